@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The errors a user can mend; everything else that is raised is a defect of the program."""
+
+
+class PipeWorkbenchError(Exception):
+    """One sentence that says which file or object, what is wrong and what to do."""
+
+
+class InputError(PipeWorkbenchError):
+    """Something from outside does not fit.
+
+    Parameters
+    ----------
+    source : object
+        The file (or object) the input came from.
+    key : str
+        Path of the offending key, such as ``cameras[1].interior.pixel_pitch``; may be empty.
+    problem : str
+        What is wrong, without a full stop.
+    remedy : str
+        What the user can do about it, without a full stop.
+    """
+
+    def __init__(self, source: object, key: str, problem: str, remedy: str) -> None:
+        self.source, self.key, self.problem, self.remedy = str(source), key, problem, remedy
+        where = f"{source}: {key}" if key else f"{source}"
+        super().__init__(f"{where}: {problem}; {remedy}")
+
+
+class MissingPackageError(PipeWorkbenchError):
+    """A Python package or program that this step needs is not installed."""
+
+    def __init__(self, name: str, purpose: str, command: str) -> None:
+        super().__init__(f"{purpose} needs {name}, which is not installed here; install it with: {command}")

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A station: a rig of oriented cameras and their images, read from ``station.json``.
+
+Cameras come out in the station's level frame (x right, y forward, z up), so that nothing after this
+module needs to know about rigs and inclination sensors.
+"""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, Field, TypeAdapter, field_validator
+from scipy.spatial.transform import Rotation
+
+from pipeworkbench.errors import InputError
+from pipeworkbench.files import check, read_json, warn_of_unknown_keys
+from pipeworkbench.recon.camera import Array, Camera, Interior, OpenCVInterior, PhotogrammetricInterior
+
+log = logging.getLogger(__name__)
+
+SCHEMA = "pipeworkbench-station/1"
+ORTHONORMAL_TOLERANCE = 1e-5  # largest entry of R R^T - I; files with six decimals stay below it
+DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)  # what OpenCV's functions take
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[Finite, Field(gt=0)]
+Row = tuple[Finite, Finite, Finite]
+RotationMatrix = tuple[Row, Row, Row]
+
+
+class _Photogrammetric(BaseModel):
+    model: Literal["photogrammetric"]
+    pixel_pitch: Positive
+    principal_distance: Positive
+    principal_point: tuple[Finite, Finite]
+    A1: Finite = 0.0
+    A2: Finite = 0.0
+    B1: Finite = 0.0
+    B2: Finite = 0.0
+    C1: Finite = 0.0
+    C2: Finite = 0.0
+    r0: Finite = 0.0
+
+    def interior(self, width: int, height: int) -> Interior:
+        return PhotogrammetricInterior(width, height, **self.model_dump(exclude={"model"}))
+
+
+class _OpenCV(BaseModel):
+    model: Literal["opencv"]
+    fx: Positive
+    fy: Positive
+    cx: Finite
+    cy: Finite
+    distortion: tuple[Finite, ...] = ()
+
+    @field_validator("distortion")
+    @classmethod
+    def _known_length(cls, value: tuple[float, ...]) -> tuple[float, ...]:
+        if len(value) not in DISTORTION_LENGTHS:
+            raise ValueError(f"has {len(value)} coefficients, OpenCV knows {', '.join(map(str, DISTORTION_LENGTHS))}")
+        return value
+
+    def interior(self, width: int, height: int) -> Interior:
+        return OpenCVInterior(width, height, **self.model_dump(exclude={"model"}))
+
+
+def _orthonormal(value: RotationMatrix) -> RotationMatrix:
+    matrix = np.array(value)
+    deviation = float(np.abs(matrix @ matrix.T - np.eye(3)).max())
+    if deviation > ORTHONORMAL_TOLERANCE:
+        raise ValueError(f"not a rotation: its rows are not orthonormal (deviation {deviation:.2g})")
+    if np.linalg.det(matrix) < 0:
+        raise ValueError("not a rotation but a reflection (determinant -1)")
+    return value
+
+
+class _Exterior(BaseModel):
+    rotation_rig_to_camera: RotationMatrix
+    projection_centre: Row
+
+    _check = field_validator("rotation_rig_to_camera")(_orthonormal)
+
+
+class _Camera(BaseModel):
+    name: Annotated[str, Field(min_length=1)]
+    image: Annotated[str, Field(min_length=1)]
+    width: Annotated[int, Field(ge=16)]
+    height: Annotated[int, Field(ge=16)]
+    interior: Annotated[_Photogrammetric | _OpenCV, Field(discriminator="model")]
+    exterior: _Exterior
+
+
+class _Station(BaseModel):
+    schema_name: Annotated[Literal["pipeworkbench-station/1"], Field(alias="schema")]
+    name: Annotated[str, Field(min_length=1)]
+    length_unit: Literal["mm"] = "mm"
+    cameras: Annotated[list[_Camera], Field(min_length=2)]
+    level_from_rig: RotationMatrix
+
+    _check = field_validator("level_from_rig")(_orthonormal)
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """Cameras in the station's level frame and where their images lie; ``source`` is the file."""
+
+    name: str
+    cameras: tuple[Camera, ...]
+    images: tuple[Path, ...]
+    source: Path
+
+    def camera_index(self, name: str) -> int | None:
+        """Return the index of the camera with this name, None where there is none."""
+        return next((i for i, camera in enumerate(self.cameras) if camera.name == name), None)
+
+
+def read_station(path: Path) -> Station:
+    """Read ``station.json`` (or the folder that holds it) and check that the images are there.
+
+    Raises
+    ------
+    InputError
+        Where the file or an image is missing or a value does not fit; names file, key and remedy.
+    """
+    source = path / "station.json" if path.is_dir() else path
+    data = read_json(source)
+    if not isinstance(data, dict):
+        raise InputError(source, "", "is not a JSON object", f"give a file of schema {SCHEMA}")
+    _look_at_keys(data, source)
+    station = check(TypeAdapter(_Station), data, source)
+    names = [camera.name for camera in station.cameras]
+    if len(set(names)) < len(names):
+        raise InputError(source, "cameras", f"names are not unique ({', '.join(names)})", "give each camera its own name")
+    level_from_rig = _rotation(station.level_from_rig)
+    cameras = tuple(
+        Camera(
+            camera.name,
+            camera.interior.interior(camera.width, camera.height),
+            _rotation(camera.exterior.rotation_rig_to_camera) @ level_from_rig.T,
+            level_from_rig @ np.array(camera.exterior.projection_centre),
+        )
+        for camera in station.cameras
+    )
+    _refuse_single_viewpoint(cameras, source)
+    images = tuple(source.parent / camera.image for camera in station.cameras)
+    for index, image in enumerate(images):
+        if not image.is_file():
+            raise InputError(source, f"cameras[{index}].image", f"there is no file {image}", "put the image there or correct the name")
+    return Station(station.name, cameras, images, source)
+
+
+def read_image(station: Station, index: int) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    """Read a camera's image as grey values (height, width), 8 or 16 bit.
+
+    Raises
+    ------
+    InputError
+        Where the file is not an image or its size is not the calibration's.
+    """
+    import cv2
+
+    path, interior = station.images[index], station.cameras[index].interior
+    key = f"cameras[{index}].image"
+    try:
+        data = np.fromfile(path, np.uint8)
+    except OSError as error:
+        raise InputError(path, "", f"cannot be read ({error.strerror})", "check the permissions") from None
+    # the calibration belongs to the sensor's pixels as stored: a rotation flag must not turn them
+    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_ANYDEPTH | cv2.IMREAD_IGNORE_ORIENTATION
+    grey: Any = cv2.imdecode(data, flags) if data.size else None
+    if grey is None or grey.dtype not in (np.uint8, np.uint16):
+        raise InputError(station.source, key, f"{path} is not an 8- or 16-bit image", "give a PNG, JPEG or TIFF")
+    height, width = grey.shape
+    if (width, height) != (interior.width, interior.height):
+        raise InputError(
+            station.source,
+            key,
+            f"{path} is {width} x {height} pixels, the calibration is for {interior.width} x {interior.height}",
+            "give the original image or the calibration of this size",
+        )
+    return grey  # type: ignore[no-any-return]
+
+
+def _rotation(matrix: RotationMatrix) -> Array:
+    """Return the nearest exact rotation matrix (3, 3): files are rounded."""
+    return np.asarray(Rotation.from_matrix(matrix).as_matrix())
+
+
+def _refuse_single_viewpoint(cameras: tuple[Camera, ...], source: Path) -> None:
+    centres = np.array([camera.projection_centre for camera in cameras])
+    if np.linalg.norm(centres - centres[0], axis=1).max() < 1.0:
+        raise InputError(source, "cameras", "all projection centres coincide (within 1 mm)", "give them in mm; a base is needed for depth")
+
+
+def _look_at_keys(data: dict[str, Any], source: Path) -> None:
+    """Refuse misspelt keys and tell of unknown ones, at every level."""
+
+    def look(values: object, model: type[BaseModel], location: str) -> None:
+        if isinstance(values, dict):
+            warn_of_unknown_keys(values, [f.alias or n for n, f in model.model_fields.items()], source, location, log.warning)
+
+    look(data, _Station, "")
+    cameras = data.get("cameras")
+    for index, camera in enumerate(cameras if isinstance(cameras, list) else []):
+        if isinstance(camera, dict):
+            look(camera, _Camera, f"cameras[{index}]")
+            look(camera.get("exterior"), _Exterior, f"cameras[{index}].exterior")
+            interior = camera.get("interior")
+            if isinstance(interior, dict):
+                model = _OpenCV if interior.get("model") == "opencv" else _Photogrammetric
+                look(interior, model, f"cameras[{index}].interior")
+
+
