@@ -204,7 +204,7 @@ def _observe(
         if not found.any():
             continue
         gain = seen.gain.reshape(-1)[found, None]
-        outward = seen.outward.reshape(-1, 3)[found]
+        outward = np.repeat(seen.outward[0], len(along), axis=0)[found]
         lever = np.tile(along, 2)[found, None] / half_length
         across = outward @ axes.T
         designs.append(gain * np.hstack([across, lever * across, np.ones((len(across), 1))]))

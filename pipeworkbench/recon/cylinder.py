@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array, Camera
 
@@ -18,9 +20,9 @@ class Cylinder:
     direction: Array
     radius: float
 
-    def along(self, points: Array) -> Array:
-        """Return where points (n, 3) project onto the axis: signed distances (n,) from ``point``."""
-        return np.asarray((points - self.point) @ self.direction)
+    def as_many(self) -> Cylinders:
+        """Return the cylinder as a batch of one."""
+        return Cylinders(self.point[None], self.direction[None], np.array([self.radius]))
 
     def at(self, along: float) -> Array:
         """Return the axis point (3,) at a signed distance from ``point``."""
@@ -28,90 +30,96 @@ class Cylinder:
 
 
 @dataclass(frozen=True, eq=False)
-class Contour:
-    """Samples of the two edges of a cylinder in one image; axis 0 is the side of the cylinder.
+class Cylinders:
+    """Many cylinders at once: points (k, 3), unit directions (k, 3), radii (k,)."""
 
-    position (2, n, 2) pixels, NaN where not in the image; normal (2, n, 2) unit, away from the
-    cylinder; point (2, n, 3) the edge-generating points; outward (2, n, 3) the surface normals there;
-    gain (2, n) pixels along ``normal`` per mm along ``outward``.
+    points: Array
+    directions: Array
+    radii: Array
+
+    def __len__(self) -> int:
+        return len(self.radii)
+
+    def __getitem__(self, rows: NDArray[Any]) -> Cylinders:
+        return Cylinders(self.points[rows], self.directions[rows], self.radii[rows])
+
+    def one(self, row: int) -> Cylinder:
+        """Return one of them."""
+        return Cylinder(self.points[row], self.directions[row], float(self.radii[row]))
+
+    def nearest_to_ray(self, origin: Array, ray: Array) -> Array:
+        """Return where a ray (3,) from ``origin`` (3,) passes nearest to each axis: distances (k,) along it."""
+        w = self.points - origin
+        b = self.directions @ ray
+        return np.asarray((b * (w @ ray) - np.einsum("ki,ki->k", w, self.directions)) / (1 - b**2))
+
+
+@dataclass(frozen=True, eq=False)
+class Contours:
+    """Samples of both edges of cylinders in one image.
+
+    The leading axes (k, 2, n) are cylinder, side and sample: position (k, 2, n, 2) pixels, NaN where
+    not in the image; normal (k, 2, n, 2) unit, away from the cylinder; gain (k, 2, n) pixels along
+    ``normal`` per mm along ``outward`` (k, 2, 3), the surface's normal along each edge.
     """
 
     position: Array
     normal: Array
-    point: Array
-    outward: Array
     gain: Array
+    outward: Array
 
 
-def perpendicular_axes(direction: Array) -> tuple[Array, Array]:
-    """Return two unit vectors (3,) that form a right-handed frame with a unit direction (3,)."""
-    helper = np.eye(3)[np.argmin(np.abs(direction))]
-    first = np.cross(direction, helper)
-    first /= np.linalg.norm(first)
-    return first, np.cross(direction, first)
+def perpendicular_axes(directions: Array) -> tuple[Array, Array]:
+    """Return two arrays of unit vectors (..., 3) that form right-handed frames with directions (..., 3)."""
+    helper = np.eye(3)[np.argmin(np.abs(directions), axis=-1)]
+    first = np.cross(directions, helper)
+    first /= np.linalg.norm(first, axis=-1, keepdims=True)
+    return first, np.cross(directions, first)
 
 
-def edge_lines(centres: Array, directions: Array, radii: Array, projection_centre: Array) -> tuple[Array, Array]:
+def edge_lines(cylinders: Cylinders, projection_centre: Array) -> tuple[Array, Array]:
     """Return the lines on cylinders along which a camera sees their edges.
-
-    Parameters
-    ----------
-    centres, directions : (k, 3) arrays
-        A point on each axis and the unit directions.
-    radii : (k,) array
-    projection_centre : (3,) array
 
     Returns
     -------
     points : (k, 2, 3) array
-        A point of each edge line, in the cross-section of ``centres``; NaN where the camera is inside.
+        A point of each edge line, in the cross-section of the cylinder's point; NaN where the
+        projection centre is inside the cylinder.
     outward : (k, 2, 3) array
-        Surface normals along each line.
+        The surface's normal along each line.
     """
-    to_camera = projection_centre - centres
+    directions = cylinders.directions
+    to_camera = projection_centre - cylinders.points
     to_camera = to_camera - np.einsum("ki,ki->k", to_camera, directions)[:, None] * directions
     distance = np.linalg.norm(to_camera, axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         towards = to_camera / distance[:, None]
         sideways = np.cross(directions, towards)
         # tangent from the camera: the radius is perpendicular to the ray, so cos(angle) = radius / distance
-        cosine = (radii / distance)[:, None]
+        cosine = (cylinders.radii / distance)[:, None]
         sine = np.sqrt(1 - cosine**2)
         outward = np.stack([cosine * towards + sine * sideways, cosine * towards - sine * sideways], axis=1)
-    return centres[:, None, :] + radii[:, None, None] * outward, outward
+    return cylinders.points[:, None, :] + cylinders.radii[:, None, None] * outward, outward
 
 
-def contour(camera: Camera, cylinder: Cylinder, along: Array) -> Contour:
-    """Return the cylinder's edges in an image at signed distances ``along`` (n,) from its point."""
-    lines, outward = edge_lines(cylinder.point[None], cylinder.direction[None], np.array([cylinder.radius]), camera.projection_centre)
-    points = lines[0][:, None, :] + along[None, :, None] * cylinder.direction
-    count = len(along)
-    flat, derivative = camera.project_with_derivative(points.reshape(-1, 3))
-    flat = np.where(camera.sees(flat)[:, None], flat, np.nan)
-    tangent = derivative @ cylinder.direction
-    normals = np.repeat(outward[0], count, axis=0)
-    position, normal, gain = _normal_and_gain(flat, tangent, derivative, normals)
-    return Contour(
-        position.reshape(2, count, 2),
-        normal.reshape(2, count, 2),
-        points,
-        normals.reshape(2, count, 3),
-        gain.reshape(2, count),
-    )
-
-
-def _normal_and_gain(position: Array, tangent: Array, derivative: Array, outward: Array) -> tuple[Array, Array, Array]:
-    """Return positions, image normals away from the cylinder and their gain in px/mm, row by row."""
+def contours(camera: Camera, cylinders: Cylinders, along: Array) -> Contours:
+    """Return the edges of cylinders in an image at signed distances ``along`` (k, n) from their points."""
+    lines, outward = edge_lines(cylinders, camera.projection_centre)
+    shape = (len(cylinders), 2, along.shape[1])
+    direction = np.broadcast_to(cylinders.directions[:, None, None, :], (*shape, 3))
+    points = lines[:, :, None, :] + along[:, None, :, None] * direction
+    position, derivative = camera.project_with_derivative(points.reshape(-1, 3))
+    position[~camera.sees(position)] = np.nan
+    surface = np.broadcast_to(outward[:, :, None, :], (*shape, 3)).reshape(-1, 3)
     with np.errstate(invalid="ignore", divide="ignore"):
-        tangent = tangent / np.linalg.norm(tangent, axis=1, keepdims=True)
+        tangent = np.einsum("nij,nj->ni", derivative, direction.reshape(-1, 3))
+        tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
         normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
-        gain = np.einsum("ni,nij,nj->n", normal, derivative, outward)
+        gain = np.einsum("ni,nij,nj->n", normal, derivative, surface)
         sign = np.where(gain < 0, -1.0, 1.0)
-    return position, normal * sign[:, None], gain * sign
+    return Contours(position.reshape(*shape, 2), (normal * sign[:, None]).reshape(*shape, 2), (gain * sign).reshape(shape), outward)
 
 
-def intersect_axes(cylinder: Cylinder, origin: Array, rays: Array) -> Array:
-    """Return where rays (n, 3) from ``origin`` (3,) pass nearest to the axis, as distances along it (n,)."""
-    w = cylinder.point - origin
-    b = rays @ cylinder.direction
-    return np.asarray((b * (rays @ w) - cylinder.direction @ w) / (1 - b**2))
+def contour(camera: Camera, cylinder: Cylinder, along: Array) -> Contours:
+    """Return the edges of one cylinder (k = 1) at signed distances ``along`` (n,) from its point."""
+    return contours(camera, cylinder.as_many(), along[None])

@@ -50,13 +50,12 @@ def extent_of(views: Sequence[View], cylinder: Cylinder, known: tuple[float, flo
     seen = np.zeros(len(along), bool)
     for view in views:
         seen |= _both_edges_seen(view, cylinder, along, window, settings)
-    inside = np.flatnonzero((along >= known[0]) & (along <= known[1]) & seen)
-    if not len(inside):
-        return known
+    seen |= (along >= known[0]) & (along <= known[1])
+    inside = int(np.argmin(np.abs(along - (known[0] + known[1]) / 2)))
     gap = round(settings.bridge / settings.sample)
-    first = _end_of_run(seen[: inside[-1] + 1][::-1], gap)
-    last = _end_of_run(seen[inside[0] :], gap)
-    return float(along[inside[-1] - first]), float(along[inside[0] + last])
+    first = along[inside - _end_of_run(seen[: inside + 1][::-1], gap)]
+    last = along[inside + _end_of_run(seen[inside:], gap)]
+    return min(float(first), known[0]), max(float(last), known[1])
 
 
 def _both_edges_seen(view: View, cylinder: Cylinder, along: Array, window: int, settings: ExtentSettings) -> NDArray[np.bool_]:

@@ -48,8 +48,8 @@ def match(edges: EdgeMap, positions: Array, normals: Array, search_range: float,
     reach = np.arange(0.0, search_range + STEP_PX, STEP_PX)
     steps = np.concatenate([-reach[:0:-1], reach])
     height, width = edges.index.shape
-    known = np.isfinite(positions).all(axis=1)
-    start = np.where(known[:, None], positions, -1e6)
+    known = (np.isfinite(positions) & np.isfinite(normals)).all(axis=1, keepdims=True)
+    start, normals = np.where(known, positions, -1e6), np.where(known, normals, 0.0)
     u = np.rint(start[:, :1] + normals[:, :1] * steps).astype(np.int32)
     v = np.rint(start[:, 1:] + normals[:, 1:] * steps).astype(np.int32)
     inside = (u >= 0) & (u < width) & (v >= 0) & (v < height)

@@ -17,12 +17,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pipeworkbench.catalogue import PipeSize, pipe_sizes
-from pipeworkbench.recon.adjust import CylinderSolution, adjust_cylinder
+from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinder, contour, edge_lines, intersect_axes
+from pipeworkbench.recon.cylinder import Cylinder, Cylinders, contour, contours
+from pipeworkbench.recon.evidence import evidence
 from pipeworkbench.recon.extent import ExtentSettings, extent_of
 from pipeworkbench.recon.match import match, quality
 from pipeworkbench.recon.picks import PipePick
+from pipeworkbench.recon.settle import settle
 from pipeworkbench.recon.tangents import PipeTangents, tangents_of
 from pipeworkbench.recon.views import View
 
@@ -36,8 +38,8 @@ class PickSettings:
     ``working_range`` and ``diameter_range`` limit the hypotheses (paper: 3-10 m, Fig. 6);
     ``search_range`` is Eq. 4's b of the ranking and ``step`` the hypotheses' distance in the other
     images, below twice b so that none is missed; ``width_sigma`` the standard deviation of the
-    apparent width; ``largest_tilt_deg`` of the axis against the image plane; ``kept`` the number of
-    hypotheses that are adjusted; ``final_range`` the b of the reported quality.
+    apparent width; ``largest_tilt_deg`` of the axis against the image plane; ``ranked`` the number
+    of hypotheses that are drawn onto the edges, ``kept`` of those that are adjusted in full; ``final_range`` the b of the reported quality.
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
@@ -47,10 +49,14 @@ class PickSettings:
     samples: int = 24
     width_sigma: float = 0.3
     largest_tilt_deg: float = 65.0
-    kept: int = 16
+    ranked: int = 80
+    kept: int = 6
     final_range: float = 3.0
     tolerance: float = 0.012  # relative deviation of the adjusted diameter from the standard's
     least_tolerance: float = 0.4  # mm, the same for thin pipes
+    misfit_penalty: float = 0.3
+    series_penalty: float = 0.3
+    most_misfit_px: float = 2.0
     least_visible: float = 0.3  # part of the samples a view must contain to have a say
     extent: ExtentSettings = ExtentSettings()
 
@@ -69,6 +75,7 @@ class PipeCandidate:
     quality: float
     diameter: float
     sigma_diameter: float
+    score: float
     approximate: bool
 
     @property
@@ -87,32 +94,21 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
     """
     settings = settings or PickSettings()
     tangents = tangents_of(views[pick.camera], pick)
+    origin = views[pick.camera].camera.projection_centre
     hypotheses = _hypotheses(views, pick, tangents, settings)
     if hypotheses is None:
         return ()
-    ranked = _rank(views, pick, tangents, hypotheses, settings)
+    ranked = settle(views, _rank(views, pick, tangents, hypotheses, settings), lambda c: clicked_extents(c, origin, tangents))
     found: list[PipeCandidate] = []
-    for cylinder in ranked:
+    for cylinder in _best_distinct(views, pick, tangents, ranked, settings):
         candidate = _adjusted(views, pick, tangents, cylinder, settings)
         if candidate is not None and not any(_same(candidate, other) for other in found):
             found.append(candidate)
-    found.sort(key=lambda c: (c.approximate, c.quality))
+    found.sort(key=lambda c: -c.score)
     return tuple(_completed(views, candidate, pick, settings) for candidate in found[:3])
 
 
-@dataclass(frozen=True, eq=False)
-class _Hypotheses:
-    """Cylinders: points (k, 3), directions (k, 3), radii (k,)."""
-
-    points: Array
-    directions: Array
-    radii: Array
-
-    def __getitem__(self, rows: Array) -> _Hypotheses:
-        return _Hypotheses(self.points[rows], self.directions[rows], self.radii[rows])
-
-
-def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, settings: PickSettings) -> _Hypotheses | None:
+def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, settings: PickSettings) -> Cylinders | None:
     """Return cylinders over depth and tilt that look as clicked in the picked image."""
     camera = views[pick.camera].camera
     scale = camera.interior.pixels_per_radian
@@ -147,88 +143,76 @@ def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, s
         return None
     directions = np.cos(tilt)[:, None] * tangents.across + np.sin(tilt)[:, None] * tangents.middle
     points = camera.projection_centre + depth[:, None] * tangents.middle
-    return _Hypotheses(points, directions, radii)[keep]
+    return Cylinders(points, directions, radii)[keep]
 
 
-def _rank(views: Sequence[View], pick: PipePick, tangents: PipeTangents, hypotheses: _Hypotheses, settings: PickSettings) -> list[Cylinder]:
-    """Return the hypotheses that fit the other images best, at most ``kept``, none beside a better one."""
+def _rank(views: Sequence[View], pick: PipePick, tangents: PipeTangents, hypotheses: Cylinders, settings: PickSettings) -> Cylinders:
+    """Return the hypotheses that fit the other images best by Eq. 4, at most ``ranked``, none beside a better one."""
     origin = views[pick.camera].camera.projection_centre
-    fractions = np.linspace(0, 1, settings.samples)
-    # both ends of the clicked edges, carried onto each axis
-    along = np.stack([_along(hypotheses, origin, ray) for ray in tangents.end_rays], axis=1)
-    along = along[:, :1] + (along[:, 1:] - along[:, :1]) * fractions
-    squares = np.full((len(views), len(hypotheses.radii)), np.nan)
-    for number, view in enumerate(views):
-        if number != pick.camera:
-            squares[number] = _quality_in(view, hypotheses, along, settings) ** 2
-    with np.errstate(invalid="ignore"):
-        total = np.nanmean(np.where(np.isnan(squares).all(axis=0), np.inf, squares), axis=0)
+    ends = clicked_extents(hypotheses, origin, tangents)
+    along = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * np.linspace(0, 1, settings.samples)
+    others = [view for number, view in enumerate(views) if number != pick.camera]
+    squares = np.array([_quality_in(view, hypotheses, along, settings) ** 2 for view in others])
+    known = np.isfinite(squares)
+    total = np.where(known, squares, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
     order = np.argsort(total, kind="stable")
-    order = order[np.isfinite(total[order])]
+    order = order[known.any(axis=0)[order]][: 8 * settings.ranked]
     depth = np.linalg.norm(hypotheses.points - origin, axis=1)
-    slope = np.einsum("ki,i->k", hypotheses.directions, tangents.middle)
-    chosen: list[int] = []
-    for row in order[:400]:
-        near_better = [abs(depth[row] / depth[k] - 1) < 0.01 and abs(slope[row] - slope[k]) < 0.1 for k in chosen]
-        if not any(near_better):
-            chosen.append(int(row))
-        if len(chosen) == settings.kept:
+    slope = hypotheses.directions @ tangents.middle
+    chosen = np.empty(0, int)
+    for row in order:
+        near_better = (np.abs(depth[row] / depth[chosen] - 1) < NEAR_DEPTH) & (np.abs(slope[row] - slope[chosen]) < NEAR_SLOPE)
+        if not near_better.any():
+            chosen = np.append(chosen, row)
+        if len(chosen) == settings.ranked:
             break
-    return [Cylinder(hypotheses.points[k], hypotheses.directions[k], float(hypotheses.radii[k])) for k in chosen]
+    return hypotheses[chosen]
 
 
-def _along(hypotheses: _Hypotheses, origin: Array, ray: Array) -> Array:
-    """Return where a ray (3,) passes nearest to each axis, as distances (k,) along it."""
-    w = hypotheses.points - origin
-    b = hypotheses.directions @ ray
-    return np.asarray((b * (w @ ray) - np.einsum("ki,ki->k", w, hypotheses.directions)) / (1 - b**2))
+def clicked_extents(cylinders: Cylinders, origin: Array, tangents: PipeTangents) -> Array:
+    """Return where the clicked part begins and ends on each axis (k, 2), ascending, mm."""
+    ends = [cylinders.nearest_to_ray(origin, ray) for ray in tangents.end_rays]
+    return np.sort(np.stack(ends, axis=1), axis=1)
 
 
-def _quality_in(view: View, hypotheses: _Hypotheses, along: Array, settings: PickSettings) -> Array:
+def _quality_in(view: View, hypotheses: Cylinders, along: Array, settings: PickSettings) -> Array:
     """Return Eq. 4's q (k,) of the hypotheses in one view; NaN where the view does not contain them."""
-    lines, _ = edge_lines(hypotheses.points, hypotheses.directions, hypotheses.radii, view.camera.projection_centre)
-    points = lines[:, :, None, :] + along[:, None, :, None] * hypotheses.directions[:, None, None, :]
-    shape = points.shape[:3]
-    pixels = view.camera.project(points.reshape(-1, 3)).reshape(*shape, 2)
-    # edges are nearly straight over a pick: one normal per edge from its ends
-    chord = pixels[:, :, -1] - pixels[:, :, 0]
-    step = np.diff(pixels, axis=2, append=pixels[:, :, -1:])
-    tangent = np.where(np.isfinite(chord)[:, :, None, :], chord[:, :, None, :], step)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        tangent = tangent / np.linalg.norm(tangent, axis=-1, keepdims=True)
-    normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1).reshape(-1, 2)
-    flat = pixels.reshape(-1, 2)
-    visible = view.camera.sees(flat) & np.isfinite(normal[:, 0])
-    distance = np.full(len(flat), np.nan)
-    distance[visible] = match(view.edges, flat[visible], normal[visible], settings.search_range).distance
-    squares = np.where(np.isnan(distance), settings.search_range, distance) ** 2
-    squares[~visible] = 0
-    count = visible.reshape(len(points), -1).sum(axis=1)
-    q = np.sqrt(squares.reshape(len(points), -1).sum(axis=1) / np.maximum(count, 1))
-    return np.where(count >= settings.least_visible * shape[1] * shape[2], q, np.nan)
+    seen = contours(view.camera, hypotheses, along)
+    distance = match(view.edges, seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2), settings.search_range).distance
+    visible = np.isfinite(seen.position[..., 0]).reshape(len(hypotheses), -1)
+    squares = np.where(np.isnan(distance), settings.search_range, distance).reshape(visible.shape) ** 2
+    count = visible.sum(axis=1)
+    q = np.sqrt(np.where(visible, squares, 0).sum(axis=1) / np.maximum(count, 1))
+    return np.where(count >= settings.least_visible * visible.shape[1], q, np.nan)
 
 
 def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinder: Cylinder, settings: PickSettings) -> PipeCandidate | None:
     """Adjust a hypothesis over the clicked part with all images, then hold the standard diameter."""
     origin = views[pick.camera].camera.projection_centre
-    ends = np.sort(intersect_axes(cylinder, origin, tangents.end_rays))
+    ends = clicked_extents(cylinder.as_many(), origin, tangents)[0]
     fixed = pick.diameter if isinstance(pick.diameter, float) else None
     observation = (fixed / 2, HELD_RADIUS_SIGMA) if fixed else None
-    solution = adjust_cylinder(views, cylinder, (float(ends[0]), float(ends[1])), observation)
+    solution = adjust_cylinder(views, cylinder, (float(ends[0]), float(ends[1])), observation, COARSE)
     if solution is None or not _in_range(solution.cylinder, origin, settings):
         return None
     diameter, sigma = 2 * solution.cylinder.radius, 2 * solution.sigma_radius
     size, fits = _size_of(pick, diameter, sigma, settings)
     if size is not None and fixed is None:
         held = (size.outer_diameter / 2, HELD_RADIUS_SIGMA)
-        solution = adjust_cylinder(views, solution.cylinder, (-solution.half_length, solution.half_length), held)
+        solution = adjust_cylinder(views, solution.cylinder, (-solution.half_length, solution.half_length), held, HOLDING)
         if solution is None:
             return None
     extent = (-solution.half_length, solution.half_length)
     q = _final_quality(views, solution.cylinder, extent, settings)
-    return PipeCandidate(solution, extent, size, q, diameter, sigma, approximate=not fits)
+    score = float(_scores(views, pick, solution.cylinder.as_many(), np.array([extent]), np.array([diameter]), settings)[0])
+    return PipeCandidate(solution, extent, size, q, diameter, sigma, score, approximate=not fits)
 
 
+COARSE = AdjustSettings(spacing=6.0, iterations=7)  # enough to compare hypotheses
+HOLDING = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=3)
+NEAR_DEPTH, NEAR_SLOPE = 0.004, 0.05  # hypotheses nearer than this (relative, sine) settle on one cylinder
+SAME_AXIS = 0.3  # in radii: settled cylinders nearer than this are one
+MOST_MISFIT = 3.0  # tolerances; beyond that a diameter is simply wrong
 HELD_RADIUS_SIGMA = 0.02  # mm; a pseudo-observation with a weight that no image evidence moves
 
 
@@ -248,6 +232,43 @@ def _size_of(pick: PipePick, diameter: float, sigma: float, settings: PickSettin
         return (exact if abs(exact.outer_diameter - wanted) < 0.05 else None), True
     best = min(pipe_sizes(), key=misfit)
     return best, abs(best.outer_diameter - diameter) <= tolerance
+
+
+def _best_distinct(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinders: Cylinders, settings: PickSettings) -> list[Cylinder]:
+    """Return the best cylinders by evidence, at most ``kept``, no two of them the same."""
+    origin = views[pick.camera].camera.projection_centre
+    extents = clicked_extents(cylinders, origin, tangents)
+    distance = np.linalg.norm(cylinders.points - origin, axis=1)
+    scores = _scores(views, pick, cylinders, extents, 2 * cylinders.radii, settings)
+    scores[(distance < settings.working_range[0]) | (distance > settings.working_range[1])] = -np.inf
+    off = tangents.misfit(cylinders, origin) * views[pick.camera].camera.interior.pixels_per_radian
+    scores[off > settings.most_misfit_px] = -np.inf
+    ends = cylinders.points[:, None] + extents[:, :, None] * cylinders.directions[:, None]
+    chosen: list[int] = []
+    for row in np.argsort(-scores):
+        apart = np.linalg.norm(ends[chosen] - ends[row], axis=2).max(axis=1)
+        if np.isfinite(scores[row]) and not (apart < SAME_AXIS * cylinders.radii[row]).any():
+            chosen.append(int(row))
+        if len(chosen) == settings.kept:
+            break
+    return [cylinders.one(row) for row in chosen]
+
+
+def _scores(views: Sequence[View], pick: PipePick, cylinders: Cylinders, extents: Array, diameters: Array, settings: PickSettings) -> Array:
+    """Return the evidence (k,) less what speaks against the size: a misfit of the diameter, a rare series."""
+    # the picked image agrees with every hypothesis: only the others can tell them apart
+    ratios = evidence([view for number, view in enumerate(views) if number != pick.camera], cylinders, extents)
+    known = np.isfinite(ratios)
+    mean = np.where(known, ratios, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+    scores = np.where(known.any(axis=0), mean, -np.inf)
+    if pick.diameter == "free":
+        return scores
+    sizes = pipe_sizes() if pick.diameter is None else ()
+    standard = np.array([size.outer_diameter for size in sizes] or [pick.diameter], float)
+    rarity = np.array([size.series - 1 for size in sizes] or [0], float)
+    misfit = np.minimum(np.abs(diameters[:, None] / standard - 1) / settings.tolerance, MOST_MISFIT)
+    penalty = settings.misfit_penalty * misfit**2 + settings.series_penalty * rarity
+    return np.asarray(scores - penalty.min(axis=1))
 
 
 def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, settings: PickSettings) -> PipeCandidate:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.cylinder import Cylinders
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.picks import PipePick
 from pipeworkbench.recon.views import View
 
-SNAP_RANGES_PX = (7.0, 5.0, 3.0, 2.0)  # clicks are a few pixels off; the range shrinks as the line settles
+SNAP_RANGES_PX = (5.0, 4.0, 3.0, 2.0)  # clicks are a few pixels off; the range shrinks as the line settles
 LEAST_SUPPORT = 0.3  # part of the samples that must find an edge, else the clicks are taken as they are
 
 
@@ -34,6 +35,20 @@ class PipeTangents:
     slope: float
     end_rays: Array
     half_length: float
+
+    def misfit(self, cylinders: Cylinders, origin: Array) -> Array:
+        """Return how far (k,), in radians, the edges of cylinders lie from the tangent planes at worst.
+
+        A tangent plane is one radius away from the axis: at both ends of the clicked part.
+        """
+        worst = np.zeros(len(cylinders))
+        for ray in self.end_rays:
+            along = cylinders.nearest_to_ray(origin, ray)
+            offset = cylinders.points + along[:, None] * cylinders.directions - origin
+            distance = np.linalg.norm(offset, axis=1)
+            for normal in self.normals:
+                worst = np.maximum(worst, np.abs(offset @ normal + cylinders.radii) / distance)
+        return worst
 
 
 def tangents_of(view: View, pick: PipePick) -> PipeTangents:

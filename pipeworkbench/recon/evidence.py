@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How much the images speak for a cylinder: a likelihood ratio against chance hits in clutter.
+
+Eq. 4's q ranks hypotheses that are far apart, but where edges are dense (brick, rust, highlights) a
+wrong contour finds an edge nearby everywhere. So the distances are compared with what the same
+contour finds when it is shifted sideways: an edge counts for as much as it is unlikely by chance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.cylinder import Cylinders, contours
+from pipeworkbench.recon.match import match
+from pipeworkbench.recon.views import View
+
+
+@dataclass(frozen=True)
+class EvidenceSettings:
+    """Tunables: search range and shifts in px, the model's hit rate and scatter (px) of a true edge."""
+
+    search_range: float = 3.0
+    shifts: tuple[float, ...] = (-21.0, -14.0, -8.0, 8.0, 14.0, 21.0)
+    hit_rate: float = 0.75
+    scatter: float = 0.35
+    least_density: float = 0.02  # edges per px: an empty neighbourhood is not known to stay empty
+    least_visible: float = 0.3
+    samples: int = 48
+
+
+def evidence(views: Sequence[View], cylinders: Cylinders, extents: Array, settings: EvidenceSettings | None = None) -> Array:
+    """Weigh the contours of cylinders in all views over their extents (k, 2), mm along the axes.
+
+    Returns
+    -------
+    (views, k) array
+        Mean log-likelihood ratio per sample, positive where the edges fit better than by chance;
+        NaN where the cylinder is not in the image.
+    """
+    settings = settings or EvidenceSettings()
+    along = extents[:, :1] + (extents[:, 1:] - extents[:, :1]) * np.linspace(0, 1, settings.samples)
+    return np.array([_in_view(view, cylinders, along, settings) for view in views])
+
+
+def _in_view(view: View, cylinders: Cylinders, along: Array, settings: EvidenceSettings) -> Array:
+    seen = contours(view.camera, cylinders, along)
+    shape, reach = seen.gain.shape, settings.search_range
+    position, normal = seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2)
+    visible = np.isfinite(position[:, 0]).reshape(shape)
+    count = visible.sum(axis=2)
+
+    # nearest-edge distances of a Poisson process: P(none within b) = exp(-2 density b)
+    hits = sum(match(view.edges, position + shift * normal, normal, reach).found for shift in settings.shifts)
+    chance = np.asarray(hits).reshape(shape).sum(axis=2) / np.maximum(count * len(settings.shifts), 1)
+    density = np.maximum(-np.log(1 - np.minimum(chance, 0.98)) / (2 * reach), settings.least_density)[:, :, None]
+
+    distance = np.abs(match(view.edges, position, normal, reach).distance).reshape(shape)
+    # a Laplace scatter forgives the tails that real edges have
+    true_edge = np.exp(-distance / settings.scatter) / (2 * settings.scatter)
+    by_chance = density * np.exp(-2 * density * distance)
+    ratio = np.log(settings.hit_rate * true_edge / by_chance + 1 - settings.hit_rate)
+    ratio = np.where(np.isnan(distance), np.log(1 - settings.hit_rate), ratio)
+    ratio[~visible] = 0
+    side = ratio.sum(axis=2) / np.maximum(count, 1)
+    enough = (count >= settings.least_visible * shape[2]).all(axis=1)
+    return np.where(enough, side.mean(axis=1), np.nan)

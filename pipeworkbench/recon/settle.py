@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Many hypotheses drawn onto the nearest edges at once: a few robust Gauss-Newton steps, batched.
+
+The same observation equations as in adjust.py, but without statistics: this only decides which
+hypotheses are worth a full adjustment, and one array operation for all of them is what makes it fast.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.cylinder import Cylinders, contours, perpendicular_axes
+from pipeworkbench.recon.match import match
+from pipeworkbench.recon.views import View
+
+RANGES_PX = (8.0, 6.0, 4.0, 3.0, 2.0, 2.0)
+SAMPLES = 24
+DAMPING = 1e-6  # of the largest diagonal element: keeps hypotheses without edges from a singular matrix
+
+
+def settle(views: Sequence[View], cylinders: Cylinders, extents_of: Callable[[Cylinders], Array]) -> Cylinders:
+    """Return the cylinders after a few iterations with free diameters.
+
+    Parameters
+    ----------
+    views : sequence of View
+    cylinders : Cylinders
+    extents_of : callable
+        Gives the extents (k, 2), mm along the axes, whose edges are used.
+    """
+    for reach in RANGES_PX:
+        if not len(cylinders):
+            return cylinders
+        extents = extents_of(cylinders)
+        middle, half = extents.mean(axis=1), np.maximum(np.diff(extents, axis=1)[:, 0] / 2, 1.0)
+        moved = Cylinders(cylinders.points + middle[:, None] * cylinders.directions, cylinders.directions, cylinders.radii)
+        step, axes = _steps(views, moved, half, reach)
+        directions = moved.directions + np.einsum("kp,kpi->ki", step[:, 2:4] / half[:, None], axes)
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        cylinders = Cylinders(moved.points + np.einsum("kp,kpi->ki", step[:, :2], axes), directions, moved.radii + step[:, 4])
+        cylinders = cylinders[(cylinders.radii > 0) & np.isfinite(cylinders.points).all(axis=1)]
+    return cylinders
+
+
+def _steps(views: Sequence[View], cylinders: Cylinders, half: Array, reach: float) -> tuple[Array, Array]:
+    """Return a Gauss-Newton step (k, 5) for each cylinder and the axes (k, 2, 3) it is given along."""
+    axes = np.stack(perpendicular_axes(cylinders.directions), axis=1)
+    normal_matrix, right = np.zeros((len(cylinders), 5, 5)), np.zeros((len(cylinders), 5))
+    lever = np.linspace(-1, 1, SAMPLES)
+    for view in views:
+        seen = contours(view.camera, cylinders, half[:, None] * lever)
+        shape = seen.gain.shape
+        distance = match(view.edges, seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2), reach).distance.reshape(shape)
+        weight = np.where(np.isnan(distance), 0, (1 - (np.nan_to_num(distance) / (1.2 * reach)) ** 2) ** 2)
+        across = np.einsum("ksi,kpi->ksp", seen.outward, axes)[:, :, None, :]
+        across = np.broadcast_to(across, (*shape, 2))
+        design = np.concatenate([across, lever[:, None] * across, np.ones((*shape, 1))], axis=3)
+        design = np.nan_to_num(seen.gain[..., None] * design).reshape(len(cylinders), -1, 5)
+        weighted = design * weight.reshape(len(cylinders), -1, 1)
+        normal_matrix += np.einsum("knp,knq->kpq", weighted, design)
+        right += np.einsum("knp,kn->kp", weighted, np.nan_to_num(distance).reshape(len(cylinders), -1))
+    largest = normal_matrix.diagonal(axis1=1, axis2=2).max(axis=1)
+    normal_matrix += (DAMPING * largest + 1e-12)[:, None, None] * np.eye(5)
+    return np.linalg.solve(normal_matrix, right[..., None])[..., 0], axes
