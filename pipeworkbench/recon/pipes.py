@@ -46,10 +46,10 @@ class PickSettings:
     diameter_range: tuple[float, float] = (10.0, 2600.0)
     search_range: float = 8.0
     step: float = 6.0
-    samples: int = 24
+    samples: int = 14
     width_sigma: float = 0.3
     largest_tilt_deg: float = 65.0
-    ranked: int = 80
+    ranked: int = 120
     kept: int = 6
     final_range: float = 3.0
     tolerance: float = 0.012  # relative deviation of the adjusted diameter from the standard's
@@ -84,13 +84,22 @@ class PipeCandidate:
         return np.array([self.solution.cylinder.at(self.extent[0]), self.solution.cylinder.at(self.extent[1])])
 
 
-def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | None = None) -> tuple[PipeCandidate, ...]:
+def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | None = None, candidates: int = 1) -> tuple[PipeCandidate, ...]:
     """Find the pipe whose two edges were clicked in one image.
+
+    Parameters
+    ----------
+    views : sequence of View
+        All images of the station.
+    pick : PipePick
+    settings : PickSettings, optional
+    candidates : int
+        How many alternatives are wanted at most; each is followed to its ends and adjusted.
 
     Returns
     -------
     tuple of PipeCandidate
-        Best first, at most a few; empty where no cylinder fits the images.
+        Best first; empty where no cylinder fits the images.
     """
     settings = settings or PickSettings()
     tangents = tangents_of(views[pick.camera], pick)
@@ -105,7 +114,7 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
         if candidate is not None and not any(_same(candidate, other) for other in found):
             found.append(candidate)
     found.sort(key=lambda c: -c.score)
-    return tuple(_completed(views, candidate, pick, settings) for candidate in found[:3])
+    return tuple(_completed(views, candidate, pick, settings) for candidate in found[:candidates])
 
 
 def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, settings: PickSettings) -> Cylinders | None:
@@ -208,7 +217,7 @@ def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cyl
     return PipeCandidate(solution, extent, size, q, diameter, sigma, score, approximate=not fits)
 
 
-COARSE = AdjustSettings(spacing=6.0, iterations=7)  # enough to compare hypotheses
+COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare hypotheses
 HOLDING = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=3)
 NEAR_DEPTH, NEAR_SLOPE = 0.004, 0.05  # hypotheses nearer than this (relative, sine) settle on one cylinder
 SAME_AXIS = 0.3  # in radii: settled cylinders nearer than this are one
@@ -287,7 +296,7 @@ def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, 
 
 
 def _final_quality(views: Sequence[View], cylinder: Cylinder, extent: tuple[float, float], settings: PickSettings) -> float:
-    along = np.linspace(*extent, 4 * settings.samples)
+    along = np.linspace(*extent, 100)
     distances = []
     for view in views:
         seen = contour(view.camera, cylinder, along)

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The command line: the workbench's jobs without FreeCAD's window.
+
+Exit status 0 done; 2 bad input, one line on stderr that names the file and what to do; 1 a defect.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import logging
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from pipeworkbench import __version__
+from pipeworkbench.errors import InputError, PipeWorkbenchError
+
+if TYPE_CHECKING:
+    from pipeworkbench.recon.reconstruct import Reconstruction
+
+DONE, DEFECT, BAD_INPUT = 0, 1, 2
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that reports a wrong call in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit status."""
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    logging.basicConfig(level=logging.ERROR if options.quiet else logging.WARNING, format="%(levelname)s: %(message)s")
+    try:
+        return int(options.run(options))
+    except PipeWorkbenchError as error:
+        print(f"pipeworkbench: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("pipeworkbench: interrupted; nothing half-written was left", file=sys.stderr)
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="pipeworkbench", description="As-built pipelines from photographs.")
+    parser.add_argument("--version", action="version", version=__version__)
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    command = commands.add_parser(
+        "reconstruct",
+        help="pipes from a station's photographs and picks",
+        description="Reconstructs the picked pipes of a station and writes them in the formats of the outputs' endings.",
+        epilog="Endings: .json .csv .ifc .step .FCStd .png. Lengths are mm in the station's level frame.",
+    )
+    command.add_argument("station", metavar="STATION_DIR", type=Path, help="folder with station.json (or that file)")
+    command.add_argument("--picks", metavar="FILE", type=Path, help="picks.json; default: the one beside station.json")
+    command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output, may be repeated")
+    command.add_argument("--working-range", metavar=("NEAR", "FAR"), nargs=2, type=float, help="distances of the pipes from the rig in mm")
+    command.add_argument("--diameters", metavar=("FROM", "TO"), nargs=2, type=float, help="outside diameters to consider in mm")
+    command.add_argument("--quiet", action="store_true", help="no table, no progress, no warnings")
+    command.add_argument("--json", action="store_true", help="print a machine-readable summary instead of the table")
+    command.set_defaults(run=_reconstruct)
+    return parser
+
+
+def _reconstruct(options: argparse.Namespace) -> int:
+    from pipeworkbench.exports.writers import Result, check_paths, write
+    from pipeworkbench.recon.picks import read_picks
+    from pipeworkbench.recon.pipes import PickSettings
+    from pipeworkbench.recon.reconstruct import reconstruct
+    from pipeworkbench.recon.station import read_station
+
+    began = time.perf_counter()
+    check_paths(options.out)
+    station = read_station(options.station)
+    picks = read_picks(options.picks or station.source.parent / "picks.json", station)
+    limits = {}
+    for name, key in (("working_range", "--working-range"), ("diameters", "--diameters")):
+        values = getattr(options, name)
+        if values is not None:
+            if not 0 < values[0] < values[1] < float("inf"):
+                raise InputError("the command line", key, f"{values[0]:g} to {values[1]:g} is no range", "give two positive mm, the smaller first")
+            limits["diameter_range" if name == "diameters" else name] = (values[0], values[1])
+
+    show = not options.quiet and not options.json
+    with _progress(show) as progress:
+        found = reconstruct(station, picks, PickSettings(**limits), progress)
+    if not found.pipeline.components:
+        raise InputError(
+            options.picks or station.source.parent / "picks.json",
+            "picks",
+            "no pipe fits the images",
+            "check that the picks are on pipe edges and that the calibration belongs to the photographs",
+        )
+    result = Result(found.pipeline, (station,))
+    for path in options.out:
+        write(result, path)
+    seconds = time.perf_counter() - began
+    if options.json:
+        print(json.dumps(_summary(found, options.out, seconds)))
+    elif show:
+        _print_table(found, options.out, seconds)
+    return DONE
+
+
+def _summary(found: Reconstruction, outputs: Sequence[Path], seconds: float) -> dict[str, object]:
+    return {
+        "station": found.pipeline.frame,
+        "pipes": len(found.pipeline.pipes),
+        "failed_picks": found.failed_picks,
+        "skipped_picks": found.skipped_picks,
+        "outputs": [str(path) for path in outputs],
+        "seconds": round(seconds, 2),
+        "components": found.pipeline.to_dict()["components"],
+    }
+
+
+def _print_table(found: Reconstruction, outputs: Sequence[Path], seconds: float) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from pipeworkbench.exports.tables import TERMINAL_COLUMNS, terminal_row
+
+    # a fixed width where there is no terminal: a table in a file is not cut at 80 columns
+    console = Console(width=None if sys.stdout.isatty() else 120, highlight=False)
+    table = Table(title=f"Station {found.pipeline.frame}", title_justify="left")
+    for column in TERMINAL_COLUMNS:
+        table.add_column(column, justify="left" if column == "remarks" else "right")
+    for pipe in found.pipeline.pipes:
+        table.add_row(*terminal_row(pipe))
+    for index in found.failed_picks:
+        table.add_row(str(index), "-", "-", "-", "-", "-", "no pipe fits the images")
+    console.print(table)
+    if found.skipped_picks:
+        console.print(f"Flanges are not reconstructed yet: {len(found.skipped_picks)} flange picks were left out.")
+    for path in outputs:
+        console.print(f"written: {path}", soft_wrap=True)
+    console.print(f"{seconds:.1f} s")
+
+
+class _progress:  # noqa: N801  # used like a function
+    """A progress bar on a terminal, nothing elsewhere."""
+
+    def __init__(self, show: bool) -> None:
+        self.show = show and sys.stderr.isatty()
+
+    def __enter__(self) -> Callable[[str, int, int], None]:
+        if not self.show:
+            return lambda text, done, total: None  # noqa: ARG005
+        from rich.console import Console
+        from rich.progress import Progress
+
+        self.bar = Progress(console=Console(stderr=True), transient=True)
+        task = self.bar.add_task("", total=None)
+        self.bar.start()
+
+        def report(text: str, done: int, total: int) -> None:
+            self.bar.update(task, description=text, completed=done, total=total)
+
+        return report
+
+    def __exit__(self, *_: object) -> None:
+        if self.show:
+            self.bar.stop()

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The endings this program writes and the writer behind each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from pipeworkbench.errors import InputError
+from pipeworkbench.exports import fcstd, ifc, pictures, step, tables
+from pipeworkbench.pipeline import Pipeline
+from pipeworkbench.recon.station import Station
+
+
+@dataclass(frozen=True)
+class Result:
+    """What there is to write: a pipeline and the stations whose photographs show it."""
+
+    pipeline: Pipeline
+    stations: tuple[Station, ...] = field(default=())
+
+
+class Writer(Protocol):
+    """Writes a result to a path, whole or not at all."""
+
+    def __call__(self, result: Result, path: Path) -> None: ...
+
+
+WRITERS: dict[str, Writer] = {
+    ".json": lambda result, path: result.pipeline.write(path),
+    ".csv": lambda result, path: tables.write_csv(result.pipeline, path),
+    ".ifc": lambda result, path: ifc.write_ifc(result.pipeline, path),
+    ".step": lambda result, path: step.write_step(result.pipeline, path),
+    ".fcstd": lambda result, path: fcstd.write_fcstd(result.pipeline, path, result.stations),
+    ".png": lambda result, path: pictures.write_picture(result.pipeline, result.stations, path),
+}
+
+
+def check_paths(paths: Sequence[Path], needs_photographs: bool = True) -> None:
+    """Refuse endings nobody writes, folders that do not exist and one name given twice.
+
+    ``needs_photographs`` is False where there is no station at hand, so that no picture can be drawn.
+    """
+    seen = set()
+    for path in paths:
+        if path.suffix.lower() not in WRITERS:
+            raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(WRITERS)}")
+        if path.suffix.lower() == ".png" and not needs_photographs:
+            raise InputError(path, "", "a picture needs the station's photographs", "name the station")
+        if not path.parent.is_dir():
+            raise InputError(path, "", f"there is no folder {path.parent}", "make it first or correct the path")
+        if path.is_dir():
+            raise InputError(path, "", "is a folder", "name a file")
+        if path.resolve() in seen:
+            raise InputError(path, "", "is given twice as an output", "name each output once")
+        seen.add(path.resolve())
+
+
+def write(result: Result, path: Path) -> None:
+    """Write a result in the format of the path's ending."""
+    WRITERS[path.suffix.lower()](result, path)

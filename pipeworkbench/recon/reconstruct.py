@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A station's picks become a pipeline: the main job, from images to components."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeworkbench.catalogue import PIPE_STANDARD
+from pipeworkbench.pipeline import Pipe, Pipeline
+from pipeworkbench.recon.picks import PipePick, Picks
+from pipeworkbench.recon.pipes import PickSettings, PipeCandidate, from_pick
+from pipeworkbench.recon.station import Station
+from pipeworkbench.recon.views import View, views_of
+
+log = logging.getLogger(__name__)
+
+# Level of Accuracy of the U.S. Institute of Building Documentation: upper limits in mm at 95 %
+LEVELS_OF_ACCURACY = ((1.0, "LOA50"), (5.0, "LOA40"), (15.0, "LOA30"), (50.0, "LOA20"))
+COVERAGE_FACTOR = 2.0  # standard deviations in a 95 % interval
+
+
+@dataclass(frozen=True)
+class Reconstruction:
+    """What came out of a station: the pipeline and the indices of the picks that gave nothing."""
+
+    pipeline: Pipeline
+    failed_picks: tuple[int, ...]
+    skipped_picks: tuple[int, ...]
+
+
+def reconstruct(
+    station: Station,
+    picks: Picks,
+    settings: PickSettings | None = None,
+    progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
+) -> Reconstruction:
+    """Reconstruct the pipes that were picked in a station.
+
+    Parameters
+    ----------
+    station : Station
+    picks : Picks
+    settings : PickSettings, optional
+    progress : callable
+        Called with what is being done, how many steps are done and how many there are.
+
+    Raises
+    ------
+    InputError
+        Where an image does not fit the station.
+    """
+    steps = len(picks.pipes) + 1
+    progress("finding edges", 0, steps)
+    views = views_of(station)
+    pipes, failed = [], []
+    for done, pick in enumerate(picks.pipes, 1):
+        progress(f"pick {pick.index}", done, steps)
+        pipe = pipe_from_pick(views, pick, station, settings)
+        if pipe is None:
+            failed.append(pick.index)
+        else:
+            pipes.append(pipe)
+    progress("done", steps, steps)
+    return Reconstruction(Pipeline.of_station(station.name, tuple(pipes)), tuple(failed), tuple(p.index for p in picks.flanges))
+
+
+def pipe_from_pick(views: tuple[View, ...], pick: PipePick, station: Station, settings: PickSettings | None = None) -> Pipe | None:
+    """Return the best pipe for a pick, None where no cylinder fits the images."""
+    candidates = from_pick(views, pick, settings)
+    return as_component(candidates[0], pick, station.name) if candidates else None
+
+
+def as_component(candidate: PipeCandidate, pick: PipePick, station: str) -> Pipe:
+    """Return a candidate as a component of the pipeline."""
+    solution, size = candidate.solution, candidate.size
+    start, end = ((float(x), float(y), float(z)) for x, y, z in candidate.ends)
+    sigma = solution.sigma_position
+    return Pipe(
+        id=f"{station}-P{pick.index:02d}",
+        start=start,
+        end=end,
+        outer_diameter=size.outer_diameter if size else round(2 * solution.cylinder.radius, 3),
+        wall_thickness=size.wall_thickness if size else None,
+        dn=size.dn if size else None,
+        standard=PIPE_STANDARD if size else None,
+        verified=size.weakest_source if size else None,  # type: ignore[arg-type]  # the table holds 0, 1, 2
+        pick=pick.index,
+        station=station,
+        quality=round(candidate.quality, 4),
+        sigma_position=(round(float(sigma[0]), 4), round(float(sigma[1]), 4), round(float(sigma[2]), 4)),
+        sigma_direction_deg=round(float(np.degrees(solution.sigma_direction)), 5),
+        sigma_outer_diameter=round(candidate.sigma_diameter, 4),
+        loa=level_of_accuracy(float(np.linalg.norm(sigma))),
+        approximate=candidate.approximate,
+    )
+
+
+def level_of_accuracy(sigma: float) -> str:
+    """Return the USIBD level of accuracy of a position with this standard deviation in mm."""
+    return next((name for limit, name in LEVELS_OF_ACCURACY if COVERAGE_FACTOR * sigma <= limit), "LOA10")
