@@ -38,16 +38,16 @@ WRITERS: dict[str, Writer] = {
 }
 
 
-def check_paths(paths: Sequence[Path], needs_photographs: bool = True) -> None:
+def check_paths(paths: Sequence[Path], has_photographs: bool = True) -> None:
     """Refuse endings nobody writes, folders that do not exist and one name given twice.
 
-    ``needs_photographs`` is False where there is no station at hand, so that no picture can be drawn.
+    ``has_photographs`` is False where there is no station at hand, so that no picture can be drawn.
     """
     seen = set()
     for path in paths:
         if path.suffix.lower() not in WRITERS:
             raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(WRITERS)}")
-        if path.suffix.lower() == ".png" and not needs_photographs:
+        if path.suffix.lower() == ".png" and not has_photographs:
             raise InputError(path, "", "a picture needs the station's photographs", "name the station")
         if not path.parent.is_dir():
             raise InputError(path, "", f"there is no folder {path.parent}", "make it first or correct the path")

@@ -3,10 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 READ_ONLY, HIDDEN = 1, 2  # FreeCAD's editor modes
+
+# what a window wants done with every object of a document that is opened: one that was written
+# without a window has no view provider yet. The window puts it here, for features know no window.
+restored_hooks: list[Callable[[Any], None]] = []
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,8 @@ class Feature:
         """Bring an object of an older version up to date."""
         self.Type = self.type_name
         self.add_properties(obj)
+        for hook in restored_hooks:
+            hook(obj)
 
     def dumps(self) -> dict[str, str]:
         """Return what is saved beside the properties (FreeCAD 0.21 and newer)."""

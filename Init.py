@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Run by FreeCAD at start-up, with and without a window: finds the addon's Python packages."""
+
+from pathlib import Path
+
+import pipeworkbench
+from pipeworkbench.environment import use_environment
+
+use_environment(Path(pipeworkbench.__file__).resolve().parent.parent)

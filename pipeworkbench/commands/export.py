@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Export: the document's pipes, or the selected ones, to IFC, STEP, JSON, CSV or a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+import FreeCADGui
+
+from pipeworkbench.commands.base import Command
+
+FILTERS = (
+    "IFC4 (*.ifc)",
+    "STEP solids (*.step)",
+    "Pipe Workbench pipeline (*.json)",
+    "Table (*.csv)",
+    "Photographs with contours (*.png)",
+)
+
+
+class Export(Command):
+    """Asks for a file and writes the pipes to it."""
+
+    name = "PipeWB_Export"
+    menu_text = "Export"
+    tooltip = "Export the pipes (all, or those selected) as IFC, STEP, JSON, CSV or as a picture"
+    icon = "export.svg"
+
+    def IsActive(self) -> bool:  # noqa: N802  # FreeCAD's name
+        """There must be a document."""
+        return FreeCAD.ActiveDocument is not None
+
+    def run(self) -> None:
+        """Ask for the file and write it."""
+        from pipeworkbench.features.document import pipes_in
+        from pipeworkbench.gui.dialogs import ask_save
+
+        document = FreeCAD.ActiveDocument
+        pipes = pipes_in(document)
+        selected = [obj for obj in FreeCADGui.Selection.getSelection() if obj in pipes]
+        path = ask_save("Export pipes", ";;".join(FILTERS), f"{document.Label}.ifc")
+        if path is not None:
+            export(document, path, selected or None)
+
+
+def export(document: Any, path: Path, objects: Iterable[Any] | None = None) -> None:
+    """Write a document's pipes (or those among ``objects``) in the format of the path's ending."""
+    from pipeworkbench.exports.writers import Result, check_paths, write
+    from pipeworkbench.features.document import pipeline_of, stations_in
+    from pipeworkbench.features.station import station_of
+
+    stations = stations_in(document)
+    check_paths([path], has_photographs=bool(stations))
+    # only a picture needs the photographs: a document without them can still be exported otherwise
+    shown = tuple(station_of(obj) for obj in stations) if path.suffix.lower() == ".png" else ()
+    write(Result(pipeline_of(document, objects), shown), path)
+    FreeCAD.Console.PrintMessage(f"written: {path}\n")

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How the document objects look in the tree and in 3D."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pipeworkbench.features.base import Feature, is_kind
+from pipeworkbench.features.pipe import PipeFeature
+from pipeworkbench.features.station import StationFeature
+from pipeworkbench.files import package_folder
+
+PIPE_COLOUR = (0.55, 0.63, 0.70)
+APPROXIMATE_COLOUR = (0.90, 0.62, 0.0)
+
+
+class ViewProvider:
+    """A view provider with an icon; the shape is shown by FreeCAD itself."""
+
+    icon = ""
+
+    def __init__(self, view_object: Any) -> None:
+        view_object.Proxy = self
+
+    def getIcon(self) -> str:  # noqa: N802  # FreeCAD's name
+        """Return the icon's file."""
+        return str(package_folder("resources") / "icons" / self.icon)
+
+    def dumps(self) -> None:
+        """There is nothing to save."""
+
+    def loads(self, state: object) -> None:
+        """There is nothing to restore."""
+
+    # FreeCAD 0.20 asks with these names
+    __getstate__ = dumps
+    __setstate__ = loads
+
+
+class PipeView(ViewProvider):
+    """A pipe in the tree."""
+
+    icon = "pipe.svg"
+
+
+class StationView(ViewProvider):
+    """A station in the tree."""
+
+    icon = "station.svg"
+
+
+VIEWS: dict[type[Feature], type[ViewProvider]] = {PipeFeature: PipeView, StationFeature: StationView}
+
+
+def show(obj: Any) -> None:
+    """Give a document object its view provider and colour."""
+    view = next((view for feature, view in VIEWS.items() if is_kind(obj, feature)), None)
+    if view is None or obj.ViewObject is None:
+        return
+    if not isinstance(obj.ViewObject.Proxy, view):
+        view(obj.ViewObject)
+    if is_kind(obj, PipeFeature):
+        obj.ViewObject.ShapeColor = APPROXIMATE_COLOUR if obj.Approximate else PIPE_COLOUR
