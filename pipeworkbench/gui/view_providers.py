@@ -59,5 +59,7 @@ def show(obj: Any) -> None:
         return
     if not isinstance(obj.ViewObject.Proxy, view):
         view(obj.ViewObject)
+        # FreeCAD hides what was written without a window
+        obj.ViewObject.Visibility = True
     if is_kind(obj, PipeFeature):
         obj.ViewObject.ShapeColor = APPROXIMATE_COLOUR if obj.Approximate else PIPE_COLOUR

@@ -31,7 +31,11 @@ def pump(milliseconds=100):
 def screenshot(name):
     if SCREENSHOTS:
         pump(300)
-        FreeCADGui.getMainWindow().grab().save(str(Path(SCREENSHOTS) / f"{name}.png"))
+        for dock in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDockWidget):
+            dock.setVisible(dock.objectName() in ("Combo View", "Report view"))
+        pump(500)
+        # the screen, not the window: a grab of the window leaves the 3D view out
+        QtWidgets.QApplication.primaryScreen().grabWindow(0).save(str(Path(SCREENSHOTS) / f"{name}.png"))
 
 
 def button(text):
