@@ -3,6 +3,6 @@
 
 import FreeCADGui
 
-from pipeworkbench.gui.workbench import PipeWorkbench
+from pipeworkbench.workbench import PipeWorkbench
 
 FreeCADGui.addWorkbench(PipeWorkbench())

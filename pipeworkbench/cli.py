@@ -12,6 +12,7 @@ import logging
 import sys
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -79,17 +80,15 @@ def _reconstruct(options: argparse.Namespace) -> int:
     check_paths(options.out)
     station = read_station(options.station)
     picks = read_picks(options.picks or station.source.parent / "picks.json", station)
-    limits = {}
-    for name, key in (("working_range", "--working-range"), ("diameters", "--diameters")):
-        values = getattr(options, name)
-        if values is not None:
-            if not 0 < values[0] < values[1] < float("inf"):
-                raise InputError("the command line", key, f"{values[0]:g} to {values[1]:g} is no range", "give two positive mm, the smaller first")
-            limits["diameter_range" if name == "diameters" else name] = (values[0], values[1])
+    settings = PickSettings()
+    if options.working_range is not None:
+        settings = replace(settings, working_range=_range(options.working_range, "--working-range"))
+    if options.diameters is not None:
+        settings = replace(settings, diameter_range=_range(options.diameters, "--diameters"))
 
     show = not options.quiet and not options.json
-    with _progress(show) as progress:
-        found = reconstruct(station, picks, PickSettings(**limits), progress)
+    with _Progress(show=show) as progress:
+        found = reconstruct(station, picks, settings, progress)
     if not found.pipeline.components:
         raise InputError(
             options.picks or station.source.parent / "picks.json",
@@ -106,6 +105,13 @@ def _reconstruct(options: argparse.Namespace) -> int:
     elif show:
         _print_table(found, options.out, seconds)
     return DONE
+
+
+def _range(values: Sequence[float], key: str) -> tuple[float, float]:
+    low, high = values
+    if not 0 < low < high < float("inf"):
+        raise InputError("the command line", key, f"{low:g} to {high:g} is no range", "give two positive mm, the smaller first")
+    return low, high
 
 
 def _summary(found: Reconstruction, outputs: Sequence[Path], seconds: float) -> dict[str, object]:
@@ -143,10 +149,10 @@ def _print_table(found: Reconstruction, outputs: Sequence[Path], seconds: float)
     console.print(f"{seconds:.1f} s")
 
 
-class _progress:  # noqa: N801  # used like a function
+class _Progress:
     """A progress bar on a terminal, nothing elsewhere."""
 
-    def __init__(self, show: bool) -> None:
+    def __init__(self, *, show: bool) -> None:
         self.show = show and sys.stderr.isatty()
 
     def __enter__(self) -> Callable[[str, int, int], None]:

@@ -80,7 +80,7 @@ def _as_input_error(error: Mapping[str, Any], data: object, source: object, pref
     location: list[str | int] = []
     inside: Any = data
     for part in error["loc"]:
-        if isinstance(inside, Mapping) and part in inside or isinstance(inside, list) and isinstance(part, int):
+        if (isinstance(inside, Mapping) and part in inside) or (isinstance(inside, list) and isinstance(part, int)):
             inside = inside[part]
             location.append(part)
         elif error["type"] == "missing" and part == error["loc"][-1]:

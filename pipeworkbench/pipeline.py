@@ -134,7 +134,7 @@ class StationPose:
 AnyComponent = Pipe | Elbow | Flange
 _KINDS: dict[str, type[AnyComponent]] = {kind.kind: kind for kind in (Pipe, Elbow, Flange)}
 _PIPELINE_KEYS = {"schema", "length_unit", "frame", "components", "joints", "stations", "sigma0"}
-_IDENTITY: Matrix = tuple(tuple(float(i == j) for j in range(4)) for i in range(4))  # type: ignore[assignment]
+_IDENTITY: Matrix = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True, kw_only=True)

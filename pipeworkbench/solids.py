@@ -20,7 +20,7 @@ def _cadquery() -> type[cadquery.Solid]:
         import cadquery
     except ImportError:
         raise MissingPackageError("CadQuery", "Making solids", "pip install 'cadquery>=2.4,<2.5'") from None
-    return cadquery.Solid  # type: ignore[no-any-return]
+    return cadquery.Solid
 
 
 def straight_pipe(outer_diameter: float, wall_thickness: float | None, length: float) -> cadquery.Solid:

@@ -19,7 +19,9 @@ def run() -> None:
         import pytest
 
         folder = os.environ["PIPEWORKBENCH_TESTS"]
-        status = str(int(pytest.main(["-q", "-s", "-p", "no:cacheprovider", "-o", "addopts=", "-o", "filterwarnings=ignore", "--rootdir", folder, folder])))
+        status = str(
+            int(pytest.main(["-q", "-s", "-p", "no:cacheprovider", "-o", "addopts=", "-o", "filterwarnings=ignore", "--rootdir", folder, folder]))
+        )
     except BaseException:  # noqa: BLE001  # FreeCAD would swallow it
         traceback.print_exc()
     finally:

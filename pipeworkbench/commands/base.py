@@ -24,7 +24,7 @@ class Command:
     icon = ""
     needs_station = False
 
-    def GetResources(self) -> dict[str, str]:  # noqa: N802  # FreeCAD's name
+    def GetResources(self) -> dict[str, str]:  # FreeCAD's name
         """Tell FreeCAD about texts and icon."""
         return {
             "MenuText": self.menu_text,
@@ -32,21 +32,19 @@ class Command:
             "Pixmap": str(package_folder("resources") / "icons" / self.icon),
         }
 
-    def IsActive(self) -> bool:  # noqa: N802  # FreeCAD's name
+    def IsActive(self) -> bool:  # FreeCAD's name
         """Tell FreeCAD whether the command can be used; called often, so nothing heavy here."""
         if not self.needs_station:
             return True
         document = FreeCAD.ActiveDocument
         return document is not None and any(hasattr(obj, "StationFile") for obj in document.Objects)
 
-    def Activated(self) -> None:  # noqa: N802  # FreeCAD's name
+    def Activated(self) -> None:  # FreeCAD's name
         """Run the command; whatever goes wrong is told in a dialog and in the report view."""
         from pipeworkbench.gui.dialogs import Cancelled, show_error
 
         try:
-            missing = missing_packages()
-            if missing:
-                raise MissingPackageError(", ".join(missing), self.menu_text, f"pip install {' '.join(missing)}")
+            self._check_packages()
             self.run()
         except Cancelled:
             FreeCAD.Console.PrintMessage(f"{self.menu_text}: cancelled\n")
@@ -56,6 +54,11 @@ class Command:
         except Exception as error:  # noqa: BLE001  # FreeCAD would only print it where nobody looks
             FreeCAD.Console.PrintError(traceback.format_exc())
             show_error(f"{self.menu_text} failed ({type(error).__name__}: {error}); the report view has the details, please report them")
+
+    def _check_packages(self) -> None:
+        missing = missing_packages()
+        if missing:
+            raise MissingPackageError(", ".join(missing), self.menu_text, f"pip install {' '.join(missing)}")
 
     def run(self) -> None:
         """Do the command's work."""

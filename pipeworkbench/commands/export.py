@@ -29,7 +29,7 @@ class Export(Command):
     tooltip = "Export the pipes (all, or those selected) as IFC, STEP, JSON, CSV or as a picture"
     icon = "export.svg"
 
-    def IsActive(self) -> bool:  # noqa: N802  # FreeCAD's name
+    def IsActive(self) -> bool:  # FreeCAD's name
         """There must be a document."""
         return FreeCAD.ActiveDocument is not None
 

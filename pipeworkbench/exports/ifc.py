@@ -129,7 +129,9 @@ class _Builder:
             "IfcProductDefinitionShape",
             Representations=[
                 self.add("IfcShapeRepresentation", ContextOfItems=axis, RepresentationIdentifier="Axis", RepresentationType="Curve3D", Items=[line]),
-                self.add("IfcShapeRepresentation", ContextOfItems=body, RepresentationIdentifier="Body", RepresentationType="SweptSolid", Items=[solid]),
+                self.add(
+                    "IfcShapeRepresentation", ContextOfItems=body, RepresentationIdentifier="Body", RepresentationType="SweptSolid", Items=[solid]
+                ),
             ],
         )
         size = f"DN {pipe.dn}" if pipe.dn else f"{pipe.outer_diameter:g} mm"

@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.exports import fcstd, ifc, pictures, step, tables
@@ -22,13 +21,7 @@ class Result:
     stations: tuple[Station, ...] = field(default=())
 
 
-class Writer(Protocol):
-    """Writes a result to a path, whole or not at all."""
-
-    def __call__(self, result: Result, path: Path) -> None: ...
-
-
-WRITERS: dict[str, Writer] = {
+WRITERS: dict[str, Callable[[Result, Path], None]] = {
     ".json": lambda result, path: result.pipeline.write(path),
     ".csv": lambda result, path: tables.write_csv(result.pipeline, path),
     ".ifc": lambda result, path: ifc.write_ifc(result.pipeline, path),
@@ -38,7 +31,7 @@ WRITERS: dict[str, Writer] = {
 }
 
 
-def check_paths(paths: Sequence[Path], has_photographs: bool = True) -> None:
+def check_paths(paths: Sequence[Path], *, has_photographs: bool = True) -> None:
     """Refuse endings nobody writes, folders that do not exist and one name given twice.
 
     ``has_photographs`` is False where there is no station at hand, so that no picture can be drawn.

@@ -51,7 +51,7 @@ class Feature:
             obj.setEditorMode(prop.name, prop.mode)
         obj.SchemaVersion = self.version
 
-    def onDocumentRestored(self, obj: Any) -> None:  # noqa: N802  # FreeCAD's name
+    def onDocumentRestored(self, obj: Any) -> None:  # FreeCAD's name
         """Bring an object of an older version up to date."""
         self.Type = self.type_name
         self.add_properties(obj)

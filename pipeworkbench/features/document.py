@@ -33,9 +33,7 @@ def add_station(document: Any, station: Station) -> Any:
         Where the document has a station of this name.
     """
     if any(obj.StationName == station.name for obj in stations_in(document)):
-        raise InputError(
-            station.source, "name", f"the document has a station '{station.name}' already", "use another document or rename the station"
-        )
+        raise InputError(station.source, "name", f"the document has a station '{station.name}' already", "use another document or rename the station")
     return add_station_object(document, station)
 
 

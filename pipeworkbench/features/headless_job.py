@@ -13,7 +13,7 @@ from pathlib import Path
 def main() -> None:
     """Do the job that PIPEWORKBENCH_JOB describes."""
     job = json.loads(Path(os.environ["PIPEWORKBENCH_JOB"]).read_text(encoding="utf-8"))
-    answer = {"error": None}
+    answer = {"error": ""}
     try:
         packages, source = job["paths"]
         sys.path.insert(0, source)

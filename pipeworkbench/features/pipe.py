@@ -65,7 +65,7 @@ class PipeFeature(Feature):
         shape.importBrepFromString(brep_text(solid))
         obj.Shape = shape
 
-    def onChanged(self, obj: Any, name: str) -> None:  # noqa: N802  # FreeCAD's name
+    def onChanged(self, obj: Any, name: str) -> None:  # FreeCAD's name
         """Keep nominal and outside diameter in step."""
         if name not in ("NominalDiameter", "OutsideDiameter") or is_restoring(obj):
             return
@@ -136,7 +136,7 @@ def pipe_of(obj: Any) -> Pipe:
         pick=None if obj.Pick == NO_PICK else obj.Pick,
         station=obj.StationName or None,
         quality=None if obj.Quality < 0 else obj.Quality,
-        sigma_position=sigma if any(sigma) else None,  # type: ignore[arg-type]  # a vector has three
+        sigma_position=sigma if any(sigma) else None,
         sigma_direction_deg=obj.SigmaDirection.Value or None,
         sigma_outer_diameter=obj.SigmaOutsideDiameter.Value or None,
         loa=obj.LevelOfAccuracy or None,

@@ -23,7 +23,7 @@ class StationFeature(Feature):
     )
 
     def execute(self, obj: Any) -> None:
-        """A station has no shape."""
+        """Do nothing: a station has no shape."""
 
 
 def add_station_object(document: Any, station: Station) -> Any:

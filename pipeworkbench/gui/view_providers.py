@@ -22,7 +22,7 @@ class ViewProvider:
     def __init__(self, view_object: Any) -> None:
         view_object.Proxy = self
 
-    def getIcon(self) -> str:  # noqa: N802  # FreeCAD's name
+    def getIcon(self) -> str:  # FreeCAD's name
         """Return the icon's file."""
         return str(package_folder("resources") / "icons" / self.icon)
 

@@ -20,6 +20,7 @@ from pipeworkbench.recon.match import match
 from pipeworkbench.recon.views import View
 
 LEAST_SAMPLES, MOST_SAMPLES = 8, 1000  # along one edge in one view
+NOT_CONVERGED = "the largest number of iterations was reached"
 PARAMETERS = 5  # two shifts and two tilts across the axis, the radius
 
 
@@ -110,25 +111,18 @@ def adjust_cylinder(
     middle = (extent[0] + extent[1]) / 2
     half_length = max((extent[1] - extent[0]) / 2, 1.0)
     current = Cylinder(cylinder.at(middle), cylinder.direction, cylinder.radius)
-    converged, message = False, "the largest number of iterations was reached"
-    iteration = 0
-    system: _System | None = None
     for iteration in range(1, settings.iterations + 1):
         reach = settings.ranges[min(iteration, len(settings.ranges)) - 1]
         system = _observe(views, current, half_length, reach, radius_observation, settings)
-        if system is None:
-            return None
-        step = system.solve()
-        if step is None or not np.all(np.isfinite(step)) or np.abs(step[:4]).max() > half_length + 50 * current.radius:
+        step = None if system is None else system.solve()
+        if system is None or step is None or np.abs(step[:4]).max() > half_length + 50 * current.radius:
             return None
         current = system.moved(step)
         if current.radius <= 0:
             return None
         if iteration >= len(settings.ranges) and np.abs(step).max() < settings.step:
-            converged, message = True, f"converged: no movement above {settings.step:g} mm"
-            break
-    assert system is not None  # at least one iteration ran
-    return system.solution(current, iteration, converged, message)
+            return system.solution(current, iteration, f"converged: no movement above {settings.step:g} mm")
+    return system.solution(current, settings.iterations, NOT_CONVERGED)
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,16 +147,17 @@ class _System:
 
     def solve(self) -> Array | None:
         try:
-            return np.asarray(np.linalg.solve(self._normal_matrix(), self.design.T @ (self._weights() * self.misclosure)))
+            step = np.linalg.solve(self._normal_matrix(), self.design.T @ (self._weights() * self.misclosure))
         except np.linalg.LinAlgError:
             return None
+        return step if np.isfinite(step).all() else None
 
     def moved(self, step: Array) -> Cylinder:
         direction = self.cylinder.direction + (step[2:4] / self.half_length) @ self.axes
         point = self.cylinder.point + step[:2] @ self.axes
         return Cylinder(point, direction / np.linalg.norm(direction), self.cylinder.radius + float(step[4]))
 
-    def solution(self, cylinder: Cylinder, iterations: int, converged: bool, message: str) -> CylinderSolution | None:
+    def solution(self, cylinder: Cylinder, iterations: int, message: str) -> CylinderSolution | None:
         image = slice(None, len(self.misclosure) - self.pseudo)
         residuals, weights = self.misclosure[image], self._weights()[image]
         effective = float(self.robust[image].sum())
@@ -176,7 +171,17 @@ class _System:
             return None
         sigma0 = float(np.sqrt(np.sum(self.robust[image] * residuals**2) / redundancy))
         return CylinderSolution(
-            cylinder, covariance, self.axes, self.half_length, sigma0, residuals, redundancy, iterations, converged, self.support, message
+            cylinder,
+            covariance,
+            self.axes,
+            self.half_length,
+            sigma0,
+            residuals,
+            redundancy,
+            iterations,
+            message != NOT_CONVERGED,
+            self.support,
+            message,
         )
 
 
@@ -246,7 +251,7 @@ def _sample_positions(view: View, cylinder: Cylinder, half_length: float, spacin
     return np.linspace(-half_length, half_length, count)
 
 
-def _tukey(distance: Array, settings: AdjustSettings, coarse: bool) -> Array:
+def _tukey(distance: Array, settings: AdjustSettings, *, coarse: bool) -> Array:
     """Return Tukey's biweight with a scale from the data; wide while the search is still coarse."""
     scale = max(1.4826 * float(np.median(np.abs(distance))), settings.least_scale)
     limit = settings.tukey * scale

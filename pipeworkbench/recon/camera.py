@@ -50,8 +50,7 @@ class Interior(ABC):
         """
         u, v = np.linspace(-0.5, self.width - 0.5, 16), np.linspace(-0.5, self.height - 0.5, 16)
         border = np.concatenate(
-            [np.column_stack([u, np.full(16, w)]) for w in (v[0], v[-1])]
-            + [np.column_stack([np.full(16, w), v]) for w in (u[0], u[-1])]
+            [np.column_stack([u, np.full(16, w)]) for w in (v[0], v[-1])] + [np.column_stack([np.full(16, w), v]) for w in (u[0], u[-1])]
         )
         return FIELD_MARGIN * float(np.nanmax(np.linalg.norm(self.ideal(border), axis=1)))
 

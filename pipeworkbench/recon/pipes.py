@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -58,7 +58,7 @@ class PickSettings:
     series_penalty: float = 0.3
     most_misfit_px: float = 2.0
     least_visible: float = 0.3  # part of the samples a view must contain to have a say
-    extent: ExtentSettings = ExtentSettings()
+    extent: ExtentSettings = field(default_factory=ExtentSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,7 +273,7 @@ def _scores(views: Sequence[View], pick: PipePick, cylinders: Cylinders, extents
     if pick.diameter == "free":
         return scores
     sizes = pipe_sizes() if pick.diameter is None else ()
-    standard = np.array([size.outer_diameter for size in sizes] or [pick.diameter], float)
+    standard = np.array([size.outer_diameter for size in sizes] if sizes else [pick.diameter], float)
     rarity = np.array([size.series - 1 for size in sizes] or [0], float)
     misfit = np.minimum(np.abs(diameters[:, None] / standard - 1) / settings.tolerance, MOST_MISFIT)
     penalty = settings.misfit_penalty * misfit**2 + settings.series_penalty * rarity

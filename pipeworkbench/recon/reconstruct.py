@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeworkbench.catalogue import PIPE_STANDARD
 from pipeworkbench.pipeline import Pipe, Pipeline
-from pipeworkbench.recon.picks import PipePick, Picks
+from pipeworkbench.recon.picks import Picks, PipePick
 from pipeworkbench.recon.pipes import PickSettings, PipeCandidate, from_pick
 from pipeworkbench.recon.station import Station
 from pipeworkbench.recon.views import View, views_of

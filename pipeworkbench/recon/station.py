@@ -183,7 +183,7 @@ def read_image(station: Station, index: int) -> NDArray[np.uint8] | NDArray[np.u
             f"{path} is {width} x {height} pixels, the calibration is for {interior.width} x {interior.height}",
             "give the original image or the calibration of this size",
         )
-    return grey  # type: ignore[no-any-return]
+    return grey
 
 
 def _rotation(matrix: RotationMatrix) -> Array:
@@ -214,5 +214,3 @@ def _look_at_keys(data: dict[str, Any], source: Path) -> None:
             if isinstance(interior, dict):
                 model = _OpenCV if interior.get("model") == "opencv" else _Photogrammetric
                 look(interior, model, f"cameras[{index}].interior")
-
-

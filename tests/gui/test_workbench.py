@@ -195,5 +195,3 @@ def test_document_written_without_a_window_shows_its_pipes(tmp_path):
         screenshot("headless")
     finally:
         FreeCAD.closeDocument(opened.Name)
-
-

@@ -27,7 +27,7 @@ class PipeWorkbench(FreeCADGui.Workbench):  # type: ignore[misc]  # FreeCAD has 
     ToolTip = "Measure pipes in photographs and model them as built"
     Icon = str(package_folder("resources") / "icons" / "workbench.svg")
 
-    def Initialize(self) -> None:  # noqa: N802  # FreeCAD's name
+    def Initialize(self) -> None:  # FreeCAD's name
         """Register the commands and put them into menu and toolbar."""
         from pipeworkbench.commands import register
 
@@ -35,6 +35,6 @@ class PipeWorkbench(FreeCADGui.Workbench):  # type: ignore[misc]  # FreeCAD has 
         self.appendToolbar(NAME, names)
         self.appendMenu(NAME, names)
 
-    def GetClassName(self) -> str:  # noqa: N802  # FreeCAD's name
+    def GetClassName(self) -> str:  # FreeCAD's name
         """Tell FreeCAD that this is a Python workbench."""
         return "Gui::PythonWorkbench"
