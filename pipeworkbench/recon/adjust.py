@@ -111,6 +111,7 @@ def adjust_cylinder(
     middle = (extent[0] + extent[1]) / 2
     half_length = max((extent[1] - extent[0]) / 2, 1.0)
     current = Cylinder(cylinder.at(middle), cylinder.direction, cylinder.radius)
+    system: _System | None = None
     for iteration in range(1, settings.iterations + 1):
         reach = settings.ranges[min(iteration, len(settings.ranges)) - 1]
         system = _observe(views, current, half_length, reach, radius_observation, settings)
@@ -122,7 +123,7 @@ def adjust_cylinder(
             return None
         if iteration >= len(settings.ranges) and np.abs(step).max() < settings.step:
             return system.solution(current, iteration, f"converged: no movement above {settings.step:g} mm")
-    return system.solution(current, settings.iterations, NOT_CONVERGED)
+    return system.solution(current, settings.iterations, NOT_CONVERGED) if system else None
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,19 +21,34 @@ from pipeworkbench.recon.views import View
 
 @dataclass(frozen=True)
 class EvidenceSettings:
-    """Tunables: search range and shifts in px, the model's hit rate and scatter (px) of a true edge."""
+    """Tunables: search range and shifts in px, the model's hit rate and scatter (px) of a true
+    edge, how far the polarity seen in one image is trusted to hold in the others."""
 
     search_range: float = 3.0
     shifts: tuple[float, ...] = (-21.0, -14.0, -8.0, 8.0, 14.0, 21.0)
     hit_rate: float = 0.75
     scatter: float = 0.35
+    polarity_trust: float = 0.8
     least_density: float = 0.02  # edges per px: an empty neighbourhood is not known to stay empty
     least_visible: float = 0.3
     samples: int = 48
 
 
-def evidence(views: Sequence[View], cylinders: Cylinders, extents: Array, settings: EvidenceSettings | None = None) -> Array:
-    """Weigh the contours of cylinders in all views over their extents (k, 2), mm along the axes.
+def evidence(
+    views: Sequence[View], cylinders: Cylinders, extents: Array, polarity: Array | None = None, settings: EvidenceSettings | None = None
+) -> Array:
+    """Weigh the contours of cylinders in all views.
+
+    Parameters
+    ----------
+    views : sequence of View
+    cylinders : Cylinders
+    extents : (k, 2) array
+        From where to where, mm along the axes.
+    polarity : (2, samples) array, optional
+        What brightness steps are expected along the sides, -1 to 1: the same pipe before the same wall
+        looks alike from neighbouring cameras.
+    settings : EvidenceSettings, optional
 
     Returns
     -------
@@ -43,10 +58,10 @@ def evidence(views: Sequence[View], cylinders: Cylinders, extents: Array, settin
     """
     settings = settings or EvidenceSettings()
     along = extents[:, :1] + (extents[:, 1:] - extents[:, :1]) * np.linspace(0, 1, settings.samples)
-    return np.array([_in_view(view, cylinders, along, settings) for view in views])
+    return np.array([_in_view(view, cylinders, along, polarity, settings) for view in views])
 
 
-def _in_view(view: View, cylinders: Cylinders, along: Array, settings: EvidenceSettings) -> Array:
+def _in_view(view: View, cylinders: Cylinders, along: Array, polarity: Array | None, settings: EvidenceSettings) -> Array:
     seen = contours(view.camera, cylinders, along)
     shape, reach = seen.gain.shape, settings.search_range
     position, normal = seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2)
@@ -58,9 +73,13 @@ def _in_view(view: View, cylinders: Cylinders, along: Array, settings: EvidenceS
     chance = np.asarray(hits).reshape(shape).sum(axis=2) / np.maximum(count * len(settings.shifts), 1)
     density = np.maximum(-np.log(1 - np.minimum(chance, 0.98)) / (2 * reach), settings.least_density)[:, :, None]
 
-    distance = np.abs(match(view.edges, position, normal, reach).distance).reshape(shape)
+    matched = match(view.edges, position, normal, reach)
+    distance = np.abs(matched.distance).reshape(shape)
     # a Laplace scatter forgives the tails that real edges have
     true_edge = np.exp(-distance / settings.scatter) / (2 * settings.scatter)
+    if polarity is not None:
+        sign = np.sign(np.einsum("ij,ij->i", view.edges.normal[matched.edge], normal)).reshape(shape)
+        true_edge *= 1 + settings.polarity_trust * polarity * sign
     by_chance = density * np.exp(-2 * density * distance)
     ratio = np.log(settings.hit_rate * true_edge / by_chance + 1 - settings.hit_rate)
     ratio = np.where(np.isnan(distance), np.log(1 - settings.hit_rate), ratio)

@@ -32,18 +32,22 @@ class Match:
         return self.edge >= 0
 
 
-def match(edges: EdgeMap, positions: Array, normals: Array, search_range: float, polarity: Array | None = None) -> Match:
-    """Search from each sample along its normal, both ways, for the nearest edge of like direction.
+def edges_along_normals(edges: EdgeMap, positions: Array, normals: Array, search_range: float) -> tuple[NDArray[np.intp], NDArray[np.int32], Array]:
+    """Return all edges of like direction that lie on the samples' normals within a range.
 
     Parameters
     ----------
     edges : EdgeMap
     positions, normals : (n, 2) arrays
-        Samples of a contour in pixels and their unit normals; NaN positions match nothing.
+        Samples of a contour in pixels and their unit normals; samples with NaN find nothing.
     search_range : float
         The paper's b in pixels, to each side.
-    polarity : (n,) array, optional
-        +1 where the brighter side must lie along the normal, -1 against it, 0 where either will do.
+
+    Returns
+    -------
+    sample, edge, distance : (m,) arrays
+        Rows of samples and edges that belong together and the distance in px along the normal; an
+        edge that two look-ups of one sample hit appears twice.
     """
     reach = np.arange(0.0, search_range + STEP_PX, STEP_PX)
     steps = np.concatenate([-reach[:0:-1], reach])
@@ -64,10 +68,23 @@ def match(edges: EdgeMap, positions: Array, normals: Array, search_range: float,
     lateral = np.abs(offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0])
     cosine = np.einsum("ij,ij->i", edges.normal[edge], normal)
     good = (lateral <= LATERAL_PX) & (np.abs(distance) <= search_range) & (np.abs(cosine) >= LEAST_COSINE)
-    if polarity is not None:
-        good &= cosine * polarity[sample] >= 0
-    sample, edge, distance = sample[good], edge[good], distance[good]
+    return sample[good], edge[good], distance[good]
 
+
+def match(edges: EdgeMap, positions: Array, normals: Array, search_range: float, polarity: Array | None = None) -> Match:
+    """Search from each sample along its normal, both ways, for the nearest edge of like direction.
+
+    Parameters
+    ----------
+    edges, positions, normals, search_range
+        As for :func:`edges_along_normals`.
+    polarity : (n,) array, optional
+        +1 where the brighter side must lie along the normal, -1 against it, 0 where either will do.
+    """
+    sample, edge, distance = edges_along_normals(edges, positions, normals, search_range)
+    if polarity is not None:
+        good = np.einsum("ij,ij->i", edges.normal[edge], normals[sample]) * polarity[sample] >= 0
+        sample, edge, distance = sample[good], edge[good], distance[good]
     nearest = np.full(len(positions), np.nan)
     row = np.full(len(positions), -1, np.int32)
     # write the far ones first: the nearest of each sample stays

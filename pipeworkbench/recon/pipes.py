@@ -20,7 +20,7 @@ from pipeworkbench.catalogue import PipeSize, pipe_sizes
 from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinder, Cylinders, contour, contours
-from pipeworkbench.recon.evidence import evidence
+from pipeworkbench.recon.evidence import EvidenceSettings, evidence
 from pipeworkbench.recon.extent import ExtentSettings, extent_of
 from pipeworkbench.recon.match import match, quality
 from pipeworkbench.recon.picks import PipePick
@@ -37,8 +37,7 @@ class PickSettings:
 
     ``working_range`` and ``diameter_range`` limit the hypotheses (paper: 3-10 m, Fig. 6);
     ``search_range`` is Eq. 4's b of the ranking and ``step`` the hypotheses' distance in the other
-    images, below twice b so that none is missed; ``width_sigma`` the standard deviation of the
-    apparent width; ``largest_tilt_deg`` of the axis against the image plane; ``ranked`` the number
+    images, below twice b so that none is missed; ``largest_tilt_deg`` of the axis against the image plane; ``ranked`` the number
     of hypotheses that are drawn onto the edges, ``kept`` of those that are adjusted in full; ``final_range`` the b of the reported quality.
     """
 
@@ -47,14 +46,14 @@ class PickSettings:
     search_range: float = 8.0
     step: float = 6.0
     samples: int = 14
-    width_sigma: float = 0.3
     largest_tilt_deg: float = 65.0
     ranked: int = 120
     kept: int = 6
     final_range: float = 3.0
     tolerance: float = 0.012  # relative deviation of the adjusted diameter from the standard's
     least_tolerance: float = 0.4  # mm, the same for thin pipes
-    misfit_penalty: float = 0.3
+    diameter_scatter: float = 0.006  # relative; EN 10216 allows 1 % at most
+    misfit_penalty: float = 0.15
     series_penalty: float = 0.3
     most_misfit_px: float = 2.0
     least_visible: float = 0.3  # part of the samples a view must contain to have a say
@@ -122,13 +121,13 @@ def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, s
     camera = views[pick.camera].camera
     scale = camera.interior.pixels_per_radian
     base = max(float(np.linalg.norm(v.camera.projection_centre - camera.projection_centre)) for v in views)
-    width_error = settings.width_sigma / (tangents.half_width * scale) / np.sqrt(2)
+    width_error = tangents.sigma_px / (2 * tangents.half_width * scale)
 
     near, far = settings.working_range
     shift = scale * base  # px of parallax per unit of inverse depth
     inverse_depth = np.linspace(1 / far, 1 / near, max(2, int(np.ceil((1 / near - 1 / far) * shift / settings.step))))
 
-    spread = 4 * settings.width_sigma / scale / (2 * tangents.half_length * tangents.half_width)
+    spread = 4 * tangents.sigma_px / scale / (2 * tangents.half_length * tangents.half_width)
     steepest = np.tan(np.radians(settings.largest_tilt_deg))
     low, high = max(tangents.slope - spread, -steepest), min(tangents.slope + spread, steepest)
     if low >= high:
@@ -161,7 +160,8 @@ def _rank(views: Sequence[View], pick: PipePick, tangents: PipeTangents, hypothe
     ends = clicked_extents(hypotheses, origin, tangents)
     along = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * np.linspace(0, 1, settings.samples)
     others = [view for number, view in enumerate(views) if number != pick.camera]
-    squares = np.array([_quality_in(view, hypotheses, along, settings) ** 2 for view in others])
+    polarity = np.rint(tangents.polarity_of(hypotheses, origin, settings.samples))
+    squares = np.array([_quality_in(view, hypotheses, along, polarity, settings) ** 2 for view in others])
     known = np.isfinite(squares)
     total = np.where(known, squares, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
     order = np.argsort(total, kind="stable")
@@ -184,10 +184,14 @@ def clicked_extents(cylinders: Cylinders, origin: Array, tangents: PipeTangents)
     return np.sort(np.stack(ends, axis=1), axis=1)
 
 
-def _quality_in(view: View, hypotheses: Cylinders, along: Array, settings: PickSettings) -> Array:
-    """Return Eq. 4's q (k,) of the hypotheses in one view; NaN where the view does not contain them."""
+def _quality_in(view: View, hypotheses: Cylinders, along: Array, polarity: Array, settings: PickSettings) -> Array:
+    """Return Eq. 4's q (k,) of the hypotheses in one view; NaN where the view does not contain them.
+
+    ``polarity`` (2, samples) of the picked image gates the edges where it is clear (-1 or 1, not 0).
+    """
     seen = contours(view.camera, hypotheses, along)
-    distance = match(view.edges, seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2), settings.search_range).distance
+    gate = np.broadcast_to(polarity, seen.gain.shape).ravel()
+    distance = match(view.edges, seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2), settings.search_range, gate).distance
     visible = np.isfinite(seen.position[..., 0]).reshape(len(hypotheses), -1)
     squares = np.where(np.isnan(distance), settings.search_range, distance).reshape(visible.shape) ** 2
     count = visible.sum(axis=1)
@@ -213,15 +217,16 @@ def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cyl
             return None
     extent = (-solution.half_length, solution.half_length)
     q = _final_quality(views, solution.cylinder, extent, settings)
-    score = float(_scores(views, pick, solution.cylinder.as_many(), np.array([extent]), np.array([diameter]), settings)[0])
+    score = float(_scores(views, pick, tangents, solution.cylinder.as_many(), np.array([extent]), np.array([diameter]), settings)[0])
     return PipeCandidate(solution, extent, size, q, diameter, sigma, score, approximate=not fits)
 
 
 COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare hypotheses
+FINAL = AdjustSettings(ranges=(3.0, 2.0))  # what is settled must not wander off to a neighbour
 HOLDING = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=3)
 NEAR_DEPTH, NEAR_SLOPE = 0.004, 0.05  # hypotheses nearer than this (relative, sine) settle on one cylinder
 SAME_AXIS = 0.3  # in radii: settled cylinders nearer than this are one
-MOST_MISFIT = 3.0  # tolerances; beyond that a diameter is simply wrong
+MOST_MISFIT = 4.0  # standard deviations; beyond that a diameter is simply wrong
 HELD_RADIUS_SIGMA = 0.02  # mm; a pseudo-observation with a weight that no image evidence moves
 
 
@@ -248,10 +253,10 @@ def _best_distinct(views: Sequence[View], pick: PipePick, tangents: PipeTangents
     origin = views[pick.camera].camera.projection_centre
     extents = clicked_extents(cylinders, origin, tangents)
     distance = np.linalg.norm(cylinders.points - origin, axis=1)
-    scores = _scores(views, pick, cylinders, extents, 2 * cylinders.radii, settings)
+    scores = _scores(views, pick, tangents, cylinders, extents, 2 * cylinders.radii, settings)
     scores[(distance < settings.working_range[0]) | (distance > settings.working_range[1])] = -np.inf
     off = tangents.misfit(cylinders, origin) * views[pick.camera].camera.interior.pixels_per_radian
-    scores[off > settings.most_misfit_px] = -np.inf
+    scores[off > max(settings.most_misfit_px, 2 * tangents.sigma_px)] = -np.inf
     ends = cylinders.points[:, None] + extents[:, :, None] * cylinders.directions[:, None]
     chosen: list[int] = []
     for row in np.argsort(-scores):
@@ -263,10 +268,14 @@ def _best_distinct(views: Sequence[View], pick: PipePick, tangents: PipeTangents
     return [cylinders.one(row) for row in chosen]
 
 
-def _scores(views: Sequence[View], pick: PipePick, cylinders: Cylinders, extents: Array, diameters: Array, settings: PickSettings) -> Array:
+def _scores(
+    views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinders: Cylinders, extents: Array, diameters: Array, settings: PickSettings
+) -> Array:
     """Return the evidence (k,) less what speaks against the size: a misfit of the diameter, a rare series."""
     # the picked image agrees with every hypothesis: only the others can tell them apart
-    ratios = evidence([view for number, view in enumerate(views) if number != pick.camera], cylinders, extents)
+    others = [view for number, view in enumerate(views) if number != pick.camera]
+    polarity = tangents.polarity_of(cylinders, views[pick.camera].camera.projection_centre, EvidenceSettings().samples)
+    ratios = evidence(others, cylinders, extents, polarity)
     known = np.isfinite(ratios)
     mean = np.where(known, ratios, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
     scores = np.where(known.any(axis=0), mean, -np.inf)
@@ -275,7 +284,9 @@ def _scores(views: Sequence[View], pick: PipePick, cylinders: Cylinders, extents
     sizes = pipe_sizes() if pick.diameter is None else ()
     standard = np.array([size.outer_diameter for size in sizes] if sizes else [pick.diameter], float)
     rarity = np.array([size.series - 1 for size in sizes] or [0], float)
-    misfit = np.minimum(np.abs(diameters[:, None] / standard - 1) / settings.tolerance, MOST_MISFIT)
+    width_px = 2 * tangents.half_width * views[pick.camera].camera.interior.pixels_per_radian
+    scatter = np.hypot(settings.diameter_scatter, tangents.sigma_px / width_px)
+    misfit = np.minimum(np.abs(diameters[:, None] / standard - 1) / scatter, MOST_MISFIT)
     penalty = settings.misfit_penalty * misfit**2 + settings.series_penalty * rarity
     return np.asarray(scores - penalty.min(axis=1))
 
@@ -285,7 +296,7 @@ def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, 
     solution = candidate.solution
     held = None if pick.diameter == "free" else (solution.cylinder.radius, HELD_RADIUS_SIGMA)
     extent = extent_of(views, solution.cylinder, candidate.extent, settings.extent)
-    longer = adjust_cylinder(views, solution.cylinder, extent, held)
+    longer = adjust_cylinder(views, solution.cylinder, extent, held, FINAL)
     if longer is None or longer.support < 0.5 * solution.support:
         return candidate
     half = longer.half_length
