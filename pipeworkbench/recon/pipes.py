@@ -18,6 +18,7 @@ import numpy as np
 
 from pipeworkbench.catalogue import PipeSize, pipe_sizes
 from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
+from pipeworkbench.recon.appearance import likeness
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinder, Cylinders, contour, contours
 from pipeworkbench.recon.evidence import EvidenceSettings, evidence
@@ -55,6 +56,7 @@ class PickSettings:
     diameter_scatter: float = 0.006  # relative; EN 10216 allows 1 % at most
     misfit_penalty: float = 0.15
     series_penalty: float = 0.3
+    likeness_weight: float = 0.6
     most_misfit_px: float = 2.0
     least_visible: float = 0.3  # part of the samples a view must contain to have a say
     extent: ExtentSettings = field(default_factory=ExtentSettings)
@@ -271,14 +273,16 @@ def _best_distinct(views: Sequence[View], pick: PipePick, tangents: PipeTangents
 def _scores(
     views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinders: Cylinders, extents: Array, diameters: Array, settings: PickSettings
 ) -> Array:
-    """Return the evidence (k,) less what speaks against the size: a misfit of the diameter, a rare series."""
+    """Return the evidence of edges and shading (k,) less what speaks against the size: a misfit of the diameter, a rare series."""
     # the picked image agrees with every hypothesis: only the others can tell them apart
     others = [view for number, view in enumerate(views) if number != pick.camera]
     polarity = tangents.polarity_of(cylinders, views[pick.camera].camera.projection_centre, EvidenceSettings().samples)
     ratios = evidence(others, cylinders, extents, polarity)
     known = np.isfinite(ratios)
-    mean = np.where(known, ratios, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-    scores = np.where(known.any(axis=0), mean, -np.inf)
+    # an image that does not contain a hypothesis speaks neither for nor against it
+    edges = np.where(known, ratios, 0).sum(axis=0) / len(others)
+    alike = likeness(views, pick.camera, cylinders, extents).sum(axis=0) / len(others)
+    scores = np.where(known.any(axis=0), edges + settings.likeness_weight * alike, -np.inf)
     if pick.diameter == "free":
         return scores
     sizes = pipe_sizes() if pick.diameter is None else ()

@@ -6,17 +6,31 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pipeworkbench.recon.camera import Camera
 from pipeworkbench.recon.edges import EdgeMap, EdgeSettings, detect_edges
 from pipeworkbench.recon.station import Station, read_image
 
 
+SHADING_SIGMA_PX = 1.5  # smoothing of the image where only its shading matters
+
+
 @dataclass(frozen=True, eq=False)
 class View:
-    """An oriented camera and the edges of its image."""
+    """An oriented camera, the edges of its image and the image itself, smoothed (height, width), for its shading."""
 
     camera: Camera
     edges: EdgeMap
+    smooth: NDArray[np.float32]
+
+
+def view_of(camera: Camera, image: NDArray[np.uint8] | NDArray[np.uint16], settings: EdgeSettings | None = None) -> View:
+    """Find the edges of a camera's grey image (height, width)."""
+    import cv2
+
+    return View(camera, detect_edges(image, settings), cv2.GaussianBlur(image.astype(np.float32), (0, 0), SHADING_SIGMA_PX))
 
 
 def views_of(station: Station, settings: EdgeSettings | None = None) -> tuple[View, ...]:
@@ -29,7 +43,7 @@ def views_of(station: Station, settings: EdgeSettings | None = None) -> tuple[Vi
     """
 
     def view(index: int) -> View:
-        return View(station.cameras[index], detect_edges(read_image(station, index), settings))
+        return view_of(station.cameras[index], read_image(station, index), settings)
 
     # two at a time: OpenCV and NumPy release the interpreter lock, and memory stays low
     with ThreadPoolExecutor(max_workers=2) as pool:

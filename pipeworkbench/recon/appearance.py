@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How alike a cylinder looks from two cameras: the shading across a pipe tells it from the clutter.
+
+Edges say where a contour may be, but a beam or a row of bricks has edges too. A pipe's brightness
+across its width (dark limbs, highlight, rust) is nearly the same from neighbouring cameras when depth
+and tilt are right, and anything but the same when they are wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.cylinder import Cylinders, contours
+from pipeworkbench.recon.views import View
+
+ALONG, ACROSS = 12, 15  # samples; the median along the pipe leaves brackets and stains out
+MARGIN = 0.08  # of the width at either side: the limb itself is the edges' business
+LEAST_SEEN = 0.5  # part of the samples that must lie in the image
+HIT_RATE = 0.9  # how often a right cylinder looks alike at all
+DECLINE = 0.15  # by how much the correlation of right cylinders scatters below 1
+
+
+def shading(view: View, cylinders: Cylinders, extents: Array) -> Array:
+    """Return the brightness across cylinders (k, ACROSS), NaN where an image does not contain one.
+
+    ``extents`` (k, 2) are mm along the axes.
+    """
+    import cv2
+
+    along = extents[:, :1] + (extents[:, 1:] - extents[:, :1]) * np.linspace(0.05, 0.95, ALONG)
+    sides = contours(view.camera, cylinders, along).position
+    weight = np.linspace(MARGIN, 1 - MARGIN, ACROSS)[:, None]
+    where = sides[:, 0, :, None, :] * (1 - weight) + sides[:, 1, :, None, :] * weight
+    seen = np.isfinite(where[..., 0])
+    flat = np.where(seen[..., None], where, -1).astype(np.float32).reshape(-1, ACROSS, 2)
+    grey = cv2.remap(view.smooth, flat, None, cv2.INTER_LINEAR).reshape(seen.shape)
+    grey = np.where(seen, grey, np.nan)
+    enough = seen.all(axis=2).mean(axis=1) >= LEAST_SEEN
+    profile = np.full((len(cylinders), ACROSS), np.nan)
+    profile[enough] = np.nanmedian(grey[enough], axis=1)
+    return profile
+
+
+def likeness(views: Sequence[View], reference: int, cylinders: Cylinders, extents: Array) -> Array:
+    """Return log-likelihood ratios (views, k) that the views show the same surface as the reference.
+
+    0 for the reference itself and where an image does not contain a cylinder.
+    """
+    profiles = np.array([shading(view, cylinders, extents) for view in views])
+    centred = profiles - profiles.mean(axis=2, keepdims=True)
+    norm = np.linalg.norm(centred, axis=2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        correlation = np.einsum("vka,ka->vk", centred, centred[reference]) / (norm * norm[reference])
+    # right cylinders pile up below 1, wrong ones spread evenly from -1 to 1
+    alike = HIT_RATE * np.exp(-(1 - correlation) / DECLINE) / DECLINE + (1 - HIT_RATE) / 2
+    ratio = np.where(np.isfinite(correlation), np.log(alike / 0.5), 0.0)
+    ratio[reference] = 0.0
+    return ratio
