@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinder, contour, perpendicular_axes
@@ -31,7 +32,9 @@ class AdjustSettings:
     ``spacing`` is the distance between samples in px (neighbouring edge points share pixels: closer
     samples would repeat the same noise), ``ranges`` the search ranges b in px iteration by iteration
     (the last one stays), ``tukey`` the factor of Tukey's biweight in robust standard deviations,
-    ``least_scale`` a floor in px for that standard deviation, ``step`` the movement in mm below which
+    ``least_scale`` a floor in px for that standard deviation, ``systematic`` the
+    standard deviation in px of what all samples of one edge in one image have in common (calibration,
+    shading of the limb), which no number of samples averages away, ``step`` the movement in mm below which
     the iteration has converged.
     """
 
@@ -39,6 +42,7 @@ class AdjustSettings:
     ranges: tuple[float, ...] = (8.0, 6.0, 4.0, 3.0)
     tukey: float = 4.7
     least_scale: float = 0.05
+    systematic: float = 0.2
     step: float = 1e-3
     iterations: int = 30
 
@@ -122,13 +126,17 @@ def adjust_cylinder(
         if current.radius <= 0:
             return None
         if iteration >= len(settings.ranges) and np.abs(step).max() < settings.step:
-            return system.solution(current, iteration, f"converged: no movement above {settings.step:g} mm")
-    return system.solution(current, settings.iterations, NOT_CONVERGED) if system else None
+            return system.solution(current, iteration, f"converged: no movement above {settings.step:g} mm", settings)
+    return system.solution(current, settings.iterations, NOT_CONVERGED, settings) if system else None
 
 
 @dataclass(frozen=True, eq=False)
 class _System:
-    """One linearisation: design matrix (n, 5), misclosures (n,), weights (n,)."""
+    """One linearisation: design matrix (n, 5), misclosures, prior sigmas and robust weights (n,).
+
+    ``edge`` numbers the edge in an image that an observation belongs to; the last ``pseudo`` rows are
+    pseudo-observations and belong to none.
+    """
 
     cylinder: Cylinder
     axes: Array
@@ -137,6 +145,7 @@ class _System:
     misclosure: Array
     prior_sigma: Array
     robust: Array
+    edge: NDArray[np.int_]
     pseudo: int
     support: float
 
@@ -158,7 +167,7 @@ class _System:
         point = self.cylinder.point + step[:2] @ self.axes
         return Cylinder(point, direction / np.linalg.norm(direction), self.cylinder.radius + float(step[4]))
 
-    def solution(self, cylinder: Cylinder, iterations: int, message: str) -> CylinderSolution | None:
+    def solution(self, cylinder: Cylinder, iterations: int, message: str, settings: AdjustSettings) -> CylinderSolution | None:
         image = slice(None, len(self.misclosure) - self.pseudo)
         residuals, weights = self.misclosure[image], self._weights()[image]
         effective = float(self.robust[image].sum())
@@ -167,9 +176,13 @@ class _System:
             return None
         sigma0_unit = float(np.sqrt(np.sum(weights * residuals**2) / redundancy))
         try:
-            covariance = np.linalg.inv(self._normal_matrix()) * max(sigma0_unit**2, 1.0)
+            cofactors = np.linalg.inv(self._normal_matrix())
         except np.linalg.LinAlgError:
             return None
+        # each edge's common error enters the parameters with the sum of its samples' influence
+        influence = (self.design[image] * weights[:, None]).T @ (self.edge[:, None] == np.unique(self.edge))
+        common = settings.systematic * cofactors @ influence
+        covariance = cofactors * max(sigma0_unit**2, 1.0) + common @ common.T
         sigma0 = float(np.sqrt(np.sum(self.robust[image] * residuals**2) / redundancy))
         return CylinderSolution(
             cylinder,
@@ -196,9 +209,9 @@ def _observe(
 ) -> _System | None:
     """Match the contours in all views and linearise."""
     axes = np.array(perpendicular_axes(cylinder.direction))
-    designs, misclosures, sigmas, robusts = [], [], [], []
+    designs, misclosures, sigmas, robusts, edges = [], [], [], [], []
     samples = 0
-    for view in views:
+    for number, view in enumerate(views):
         along = _sample_positions(view, cylinder, half_length, settings.spacing)
         if along is None:
             continue
@@ -214,6 +227,7 @@ def _observe(
         lever = np.tile(along, 2)[found, None] / half_length
         across = outward @ axes.T
         designs.append(gain * np.hstack([across, lever * across, np.ones((len(across), 1))]))
+        edges.append(2 * number + np.repeat([0, 1], len(along))[found])
         distance = matched.distance[found]
         misclosures.append(distance)
         sigmas.append(view.edges.sigma[matched.edge[found]])
@@ -236,6 +250,7 @@ def _observe(
         np.concatenate(misclosures),
         np.concatenate(sigmas),
         np.concatenate(robusts),
+        np.concatenate(edges),
         pseudo,
         count / samples,
     )

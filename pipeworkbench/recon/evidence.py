@@ -21,8 +21,11 @@ from pipeworkbench.recon.views import View
 
 @dataclass(frozen=True)
 class EvidenceSettings:
-    """Tunables: search range and shifts in px, the model's hit rate and scatter (px) of a true
-    edge, how far the polarity seen in one image is trusted to hold in the others."""
+    """Tunables of the weighing.
+
+    ``search_range`` and ``shifts`` in px; ``hit_rate`` and ``scatter`` (px) of a true edge;
+    ``polarity_trust`` says how far the polarity seen in one image is trusted to hold in the others.
+    """
 
     search_range: float = 3.0
     shifts: tuple[float, ...] = (-21.0, -14.0, -8.0, 8.0, 14.0, 21.0)

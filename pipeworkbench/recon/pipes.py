@@ -38,8 +38,14 @@ class PickSettings:
 
     ``working_range`` and ``diameter_range`` limit the hypotheses (paper: 3-10 m, Fig. 6);
     ``search_range`` is Eq. 4's b of the ranking and ``step`` the hypotheses' distance in the other
-    images, below twice b so that none is missed; ``largest_tilt_deg`` of the axis against the image plane; ``ranked`` the number
-    of hypotheses that are drawn onto the edges, ``kept`` of those that are adjusted in full; ``final_range`` the b of the reported quality.
+    images, below twice b so that none is missed; ``largest_tilt_deg`` limits the axis against the image
+    plane; ``ranked`` hypotheses are drawn onto the edges, ``kept`` of those adjusted in full;
+    ``final_range`` is the b of the reported quality.
+
+    The score is the evidence of the edges, plus ``likeness_weight`` times that of the shading, less
+    ``misfit_penalty`` for a diameter off the standard's (in units of ``diameter_scatter`` and of what
+    the width leaves open) and ``series_penalty`` per series of EN 10220 above the first. Below
+    ``least_score``, or with a diameter off by more than ``tolerance``, a pipe is marked approximate.
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
@@ -57,6 +63,7 @@ class PickSettings:
     misfit_penalty: float = 0.15
     series_penalty: float = 0.3
     likeness_weight: float = 0.6
+    least_score: float = 1.0
     most_misfit_px: float = 2.0
     least_visible: float = 0.3  # part of the samples a view must contain to have a say
     extent: ExtentSettings = field(default_factory=ExtentSettings)
@@ -220,7 +227,7 @@ def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cyl
     extent = (-solution.half_length, solution.half_length)
     q = _final_quality(views, solution.cylinder, extent, settings)
     score = float(_scores(views, pick, tangents, solution.cylinder.as_many(), np.array([extent]), np.array([diameter]), settings)[0])
-    return PipeCandidate(solution, extent, size, q, diameter, sigma, score, approximate=not fits)
+    return PipeCandidate(solution, extent, size, q, diameter, sigma, score, approximate=not fits or score < settings.least_score)
 
 
 COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare hypotheses

@@ -13,7 +13,6 @@ from pipeworkbench.recon.camera import Camera
 from pipeworkbench.recon.edges import EdgeMap, EdgeSettings, detect_edges
 from pipeworkbench.recon.station import Station, read_image
 
-
 SHADING_SIGMA_PX = 1.5  # smoothing of the image where only its shading matters
 
 
