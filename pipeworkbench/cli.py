@@ -72,8 +72,8 @@ def _parser() -> argparse.ArgumentParser:
 def _reconstruct(options: argparse.Namespace) -> int:
     from pipeworkbench.exports.writers import Result, check_paths, write
     from pipeworkbench.recon.picks import read_picks
-    from pipeworkbench.recon.pipes import PickSettings
     from pipeworkbench.recon.reconstruct import reconstruct
+    from pipeworkbench.recon.search import PickSettings
     from pipeworkbench.recon.station import read_station
 
     began = time.perf_counter()

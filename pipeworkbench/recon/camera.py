@@ -89,7 +89,8 @@ class PhotogrammetricInterior(Interior):
 
     def pixels(self, ideal: Array) -> Array:  # noqa: D102
         target = ideal * self.principal_distance
-        image, converged = _newton(lambda x: (x - self._distortion(x), self._ideal_derivative(x)), target, target)
+        start = target + self._distortion(target)
+        image, converged = _newton(lambda x: (x - self._distortion(x), self._ideal_derivative(x)), target, start)
         pixels = (image + self.principal_point) / self.pixel_pitch + self._centre
         pixels[self._outside(ideal) | ~converged] = np.nan
         return pixels

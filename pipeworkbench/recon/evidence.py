@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinders, contours
+from pipeworkbench.recon.cylinder import Cylinders, outlines
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.views import View
 
@@ -65,9 +65,9 @@ def evidence(
 
 
 def _in_view(view: View, cylinders: Cylinders, along: Array, polarity: Array | None, settings: EvidenceSettings) -> Array:
-    seen = contours(view.camera, cylinders, along)
-    shape, reach = seen.gain.shape, settings.search_range
-    position, normal = seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2)
+    position, normal = outlines(view.camera, cylinders, along)
+    shape, reach = position.shape[:3], settings.search_range
+    position, normal = position.reshape(-1, 2), normal.reshape(-1, 2)
     visible = np.isfinite(position[:, 0]).reshape(shape)
     count = visible.sum(axis=2)
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinder, contour
+from pipeworkbench.recon.cylinder import Cylinder, outlines
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.views import View
 
@@ -63,10 +63,10 @@ def _both_edges_seen(view: View, cylinder: Cylinder, along: Array, window: int, 
     depth = (cylinder.point + along[:, None] * cylinder.direction - view.camera.projection_centre) @ view.camera.rotation[2]
     ahead = depth > 2 * cylinder.radius
     result = np.zeros(len(along), bool)
-    if not ahead.any():
+    if np.count_nonzero(ahead) < 2:
         return result
-    edges = contour(view.camera, cylinder, along[ahead])
-    found = match(view.edges, edges.position.reshape(-1, 2), edges.normal.reshape(-1, 2), settings.reach).found.reshape(2, -1)
+    position, normal = outlines(view.camera, cylinder.as_many(), along[None, ahead])
+    found = match(view.edges, position.reshape(-1, 2), normal.reshape(-1, 2), settings.reach).found.reshape(2, -1)
     kernel = np.ones(window) / window
     share = np.array([np.convolve(side, kernel, mode="same") for side in found.astype(float)])
     result[ahead] = (found.any(axis=0)) & (share >= settings.evidence).all(axis=0)

@@ -12,6 +12,7 @@ from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.edges import EdgeMap
 
 STEP_PX = 0.7  # below 1/sqrt(2) no diagonal chain of edge pixels slips through between two look-ups
+CHUNK = 4096  # samples at a time: their look-ups stay in the processor's cache
 LATERAL_PX = 1.0  # an edge point further than this beside the normal belongs to another sample
 LEAST_COSINE = np.cos(np.radians(20))  # largest angle between the contour's and an edge's normal
 
@@ -49,6 +50,15 @@ def edges_along_normals(edges: EdgeMap, positions: Array, normals: Array, search
         Rows of samples and edges that belong together and the distance in px along the normal; an
         edge that two look-ups of one sample hit appears twice.
     """
+    parts = [_edges_along_normals(edges, positions, normals, search_range, start) for start in range(0, max(len(positions), 1), CHUNK)]
+    sample, edge, distance = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return sample, edge, distance
+
+
+def _edges_along_normals(
+    edges: EdgeMap, positions: Array, normals: Array, search_range: float, first: int
+) -> tuple[NDArray[np.intp], NDArray[np.int32], Array]:
+    positions, normals = positions[first : first + CHUNK], normals[first : first + CHUNK]
     reach = np.arange(0.0, search_range + STEP_PX, STEP_PX)
     steps = np.concatenate([-reach[:0:-1], reach])
     height, width = edges.index.shape
@@ -68,7 +78,7 @@ def edges_along_normals(edges: EdgeMap, positions: Array, normals: Array, search
     lateral = np.abs(offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0])
     cosine = np.einsum("ij,ij->i", edges.normal[edge], normal)
     good = (lateral <= LATERAL_PX) & (np.abs(distance) <= search_range) & (np.abs(cosine) >= LEAST_COSINE)
-    return sample[good], edge[good], distance[good]
+    return sample[good] + first, edge[good], distance[good]
 
 
 def match(edges: EdgeMap, positions: Array, normals: Array, search_range: float, polarity: Array | None = None) -> Match:

@@ -1,72 +1,34 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Pipes from one pick: Sect. 4.2 of the paper, from two clicked edges to an adjusted cylinder.
 
-The clicked edges are first drawn onto the subpixel edges of their image. The two tangent planes give
-the plane of the axis sharply; how deep the axis lies in it and how it is tilted there depends on the
-diameter and on the faint convergence of the edges. So the hypotheses are cylinders over depth and
-tilt, those of standard diameters within the working range; the other images rank them (Eq. 4), the
-best are adjusted with a free diameter, and the nearest standard diameter is then held.
+The clicked edges are drawn onto the subpixel edges of their image, the cylinders they could be are
+searched in all images, the best are adjusted with a free diameter; then the nearest standard diameter
+is held, the pipe followed to its ends and adjusted over its whole length.
 """
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeworkbench.catalogue import PipeSize, pipe_sizes
+from pipeworkbench.catalogue import PipeSize, pipe_size, pipe_sizes
 from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
-from pipeworkbench.recon.appearance import likeness
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinder, Cylinders, contour, contours
-from pipeworkbench.recon.evidence import EvidenceSettings, evidence
-from pipeworkbench.recon.extent import ExtentSettings, extent_of
+from pipeworkbench.recon.cylinder import Cylinder, outlines
+from pipeworkbench.recon.extent import extent_of
 from pipeworkbench.recon.match import match, quality
 from pipeworkbench.recon.picks import PipePick
-from pipeworkbench.recon.settle import settle
+from pipeworkbench.recon.search import PickSettings, clicked_extents, find_cylinders, scores_of
 from pipeworkbench.recon.tangents import PipeTangents, tangents_of
 from pipeworkbench.recon.views import View
 
-log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class PickSettings:
-    """Tunables of the search; lengths in mm, distances in the image in px.
-
-    ``working_range`` and ``diameter_range`` limit the hypotheses (paper: 3-10 m, Fig. 6);
-    ``search_range`` is Eq. 4's b of the ranking and ``step`` the hypotheses' distance in the other
-    images, below twice b so that none is missed; ``largest_tilt_deg`` limits the axis against the image
-    plane; ``ranked`` hypotheses are drawn onto the edges, ``kept`` of those adjusted in full;
-    ``final_range`` is the b of the reported quality.
-
-    The score is the evidence of the edges, plus ``likeness_weight`` times that of the shading, less
-    ``misfit_penalty`` for a diameter off the standard's (in units of ``diameter_scatter`` and of what
-    the width leaves open) and ``series_penalty`` per series of EN 10220 above the first. Below
-    ``least_score``, or with a diameter off by more than ``tolerance``, a pipe is marked approximate.
-    """
-
-    working_range: tuple[float, float] = (2000.0, 12000.0)
-    diameter_range: tuple[float, float] = (10.0, 2600.0)
-    search_range: float = 8.0
-    step: float = 6.0
-    samples: int = 14
-    largest_tilt_deg: float = 65.0
-    ranked: int = 120
-    kept: int = 6
-    final_range: float = 3.0
-    tolerance: float = 0.012  # relative deviation of the adjusted diameter from the standard's
-    least_tolerance: float = 0.4  # mm, the same for thin pipes
-    diameter_scatter: float = 0.006  # relative; EN 10216 allows 1 % at most
-    misfit_penalty: float = 0.15
-    series_penalty: float = 0.3
-    likeness_weight: float = 0.6
-    least_score: float = 1.0
-    most_misfit_px: float = 2.0
-    least_visible: float = 0.3  # part of the samples a view must contain to have a say
-    extent: ExtentSettings = field(default_factory=ExtentSettings)
+COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare candidates
+FINAL = AdjustSettings(ranges=(3.0, 2.0))  # what is settled must not wander off to a neighbour
+HELD_RADIUS_SIGMA = 0.02  # mm; a pseudo-observation with a weight that no image evidence moves
+SERIES_MISFIT = 0.25  # tolerances: sizes of series 1 are far more common, another must fit that much better
+LEAST_SUPPORT = 0.5  # of the clicked part's: a pipe whose extension finds fewer edges was followed too far
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,13 +73,8 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
     """
     settings = settings or PickSettings()
     tangents = tangents_of(views[pick.camera], pick)
-    origin = views[pick.camera].camera.projection_centre
-    hypotheses = _hypotheses(views, pick, tangents, settings)
-    if hypotheses is None:
-        return ()
-    ranked = settle(views, _rank(views, pick, tangents, hypotheses, settings), lambda c: clicked_extents(c, origin, tangents))
     found: list[PipeCandidate] = []
-    for cylinder in _best_distinct(views, pick, tangents, ranked, settings):
+    for cylinder in find_cylinders(views, pick, tangents, settings):
         candidate = _adjusted(views, pick, tangents, cylinder, settings)
         if candidate is not None and not any(_same(candidate, other) for other in found):
             found.append(candidate)
@@ -125,214 +82,57 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
     return tuple(_completed(views, candidate, pick, settings) for candidate in found[:candidates])
 
 
-def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, settings: PickSettings) -> Cylinders | None:
-    """Return cylinders over depth and tilt that look as clicked in the picked image."""
-    camera = views[pick.camera].camera
-    scale = camera.interior.pixels_per_radian
-    base = max(float(np.linalg.norm(v.camera.projection_centre - camera.projection_centre)) for v in views)
-    width_error = tangents.sigma_px / (2 * tangents.half_width * scale)
-
-    near, far = settings.working_range
-    shift = scale * base  # px of parallax per unit of inverse depth
-    inverse_depth = np.linspace(1 / far, 1 / near, max(2, int(np.ceil((1 / near - 1 / far) * shift / settings.step))))
-
-    spread = 4 * tangents.sigma_px / scale / (2 * tangents.half_length * tangents.half_width)
-    steepest = np.tan(np.radians(settings.largest_tilt_deg))
-    low, high = max(tangents.slope - spread, -steepest), min(tangents.slope + spread, steepest)
-    if low >= high:
-        low, high = -steepest, steepest
-    slope_step = settings.step / max(shift * tangents.half_length / near, 1.0)
-    slopes = np.linspace(low, high, max(3, int(np.ceil((high - low) / slope_step))))
-
-    depth, slope = (x.ravel() for x in np.meshgrid(1 / inverse_depth, slopes))
-    tilt = np.arctan(slope)
-    # the tangent planes, opened by the tilt: tan(angle about the axis) = tan(half width) / cos(tilt)
-    angle = np.arctan(np.tan(tangents.half_width) / np.cos(tilt))
-    radii = depth * np.cos(tilt) * np.sin(angle)
-    keep = (2 * radii >= settings.diameter_range[0]) & (2 * radii <= settings.diameter_range[1])
-    tolerance = 4 * width_error + settings.tolerance
-    if pick.diameter is None:
-        standard = np.array([size.outer_diameter for size in pipe_sizes()])
-        keep &= (np.abs(2 * radii[:, None] / standard - 1) < tolerance).any(axis=1)
-    elif pick.diameter != "free":
-        keep &= np.abs(2 * radii / pick.diameter - 1) < tolerance
-    if not keep.any():
-        return None
-    directions = np.cos(tilt)[:, None] * tangents.across + np.sin(tilt)[:, None] * tangents.middle
-    points = camera.projection_centre + depth[:, None] * tangents.middle
-    return Cylinders(points, directions, radii)[keep]
-
-
-def _rank(views: Sequence[View], pick: PipePick, tangents: PipeTangents, hypotheses: Cylinders, settings: PickSettings) -> Cylinders:
-    """Return the hypotheses that fit the other images best by Eq. 4, at most ``ranked``, none beside a better one."""
-    origin = views[pick.camera].camera.projection_centre
-    ends = clicked_extents(hypotheses, origin, tangents)
-    along = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * np.linspace(0, 1, settings.samples)
-    others = [view for number, view in enumerate(views) if number != pick.camera]
-    polarity = np.rint(tangents.polarity_of(hypotheses, origin, settings.samples))
-    squares = np.array([_quality_in(view, hypotheses, along, polarity, settings) ** 2 for view in others])
-    known = np.isfinite(squares)
-    total = np.where(known, squares, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-    order = np.argsort(total, kind="stable")
-    order = order[known.any(axis=0)[order]][: 8 * settings.ranked]
-    depth = np.linalg.norm(hypotheses.points - origin, axis=1)
-    slope = hypotheses.directions @ tangents.middle
-    chosen = np.empty(0, int)
-    for row in order:
-        near_better = (np.abs(depth[row] / depth[chosen] - 1) < NEAR_DEPTH) & (np.abs(slope[row] - slope[chosen]) < NEAR_SLOPE)
-        if not near_better.any():
-            chosen = np.append(chosen, row)
-        if len(chosen) == settings.ranked:
-            break
-    return hypotheses[chosen]
-
-
-def clicked_extents(cylinders: Cylinders, origin: Array, tangents: PipeTangents) -> Array:
-    """Return where the clicked part begins and ends on each axis (k, 2), ascending, mm."""
-    ends = [cylinders.nearest_to_ray(origin, ray) for ray in tangents.end_rays]
-    return np.sort(np.stack(ends, axis=1), axis=1)
-
-
-def _quality_in(view: View, hypotheses: Cylinders, along: Array, polarity: Array, settings: PickSettings) -> Array:
-    """Return Eq. 4's q (k,) of the hypotheses in one view; NaN where the view does not contain them.
-
-    ``polarity`` (2, samples) of the picked image gates the edges where it is clear (-1 or 1, not 0).
-    """
-    seen = contours(view.camera, hypotheses, along)
-    gate = np.broadcast_to(polarity, seen.gain.shape).ravel()
-    distance = match(view.edges, seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2), settings.search_range, gate).distance
-    visible = np.isfinite(seen.position[..., 0]).reshape(len(hypotheses), -1)
-    squares = np.where(np.isnan(distance), settings.search_range, distance).reshape(visible.shape) ** 2
-    count = visible.sum(axis=1)
-    q = np.sqrt(np.where(visible, squares, 0).sum(axis=1) / np.maximum(count, 1))
-    return np.where(count >= settings.least_visible * visible.shape[1], q, np.nan)
-
-
 def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinder: Cylinder, settings: PickSettings) -> PipeCandidate | None:
-    """Adjust a hypothesis over the clicked part with all images, then hold the standard diameter."""
+    """Adjust a hypothesis over the clicked part with all images and find its standard size."""
     origin = views[pick.camera].camera.projection_centre
-    ends = clicked_extents(cylinder.as_many(), origin, tangents)[0]
-    fixed = pick.diameter if isinstance(pick.diameter, float) else None
-    observation = (fixed / 2, HELD_RADIUS_SIGMA) if fixed else None
-    solution = adjust_cylinder(views, cylinder, (float(ends[0]), float(ends[1])), observation, COARSE)
-    if solution is None or not _in_range(solution.cylinder, origin, settings):
+    start, end = clicked_extents(cylinder.as_many(), origin, tangents)[0]
+    fixed = (pick.diameter / 2, HELD_RADIUS_SIGMA) if isinstance(pick.diameter, float) else None
+    solution = adjust_cylinder(views, cylinder, (float(start), float(end)), fixed, COARSE)
+    if solution is None:
         return None
     diameter, sigma = 2 * solution.cylinder.radius, 2 * solution.sigma_radius
     size, fits = _size_of(pick, diameter, sigma, settings)
-    if size is not None and fixed is None:
-        held = (size.outer_diameter / 2, HELD_RADIUS_SIGMA)
-        solution = adjust_cylinder(views, solution.cylinder, (-solution.half_length, solution.half_length), held, HOLDING)
-        if solution is None:
-            return None
     extent = (-solution.half_length, solution.half_length)
-    q = _final_quality(views, solution.cylinder, extent, settings)
-    score = float(_scores(views, pick, tangents, solution.cylinder.as_many(), np.array([extent]), np.array([diameter]), settings)[0])
-    return PipeCandidate(solution, extent, size, q, diameter, sigma, score, approximate=not fits or score < settings.least_score)
-
-
-COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare hypotheses
-FINAL = AdjustSettings(ranges=(3.0, 2.0))  # what is settled must not wander off to a neighbour
-HOLDING = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=3)
-NEAR_DEPTH, NEAR_SLOPE = 0.004, 0.05  # hypotheses nearer than this (relative, sine) settle on one cylinder
-SAME_AXIS = 0.3  # in radii: settled cylinders nearer than this are one
-MOST_MISFIT = 4.0  # standard deviations; beyond that a diameter is simply wrong
-HELD_RADIUS_SIGMA = 0.02  # mm; a pseudo-observation with a weight that no image evidence moves
+    score = float(scores_of(views, pick, tangents, solution.cylinder.as_many(), np.array([extent]), np.array([diameter]), settings)[0])
+    return PipeCandidate(solution, extent, size, np.inf, diameter, sigma, score, approximate=not fits or score < settings.least_score)
 
 
 def _size_of(pick: PipePick, diameter: float, sigma: float, settings: PickSettings) -> tuple[PipeSize | None, bool]:
     """Return the standard size that the adjusted diameter is taken for, and whether it fits well."""
     if pick.diameter == "free":
         return None, True
-    wanted = diameter if pick.diameter is None else pick.diameter
-    tolerance = np.hypot(max(settings.tolerance * wanted, settings.least_tolerance), 2 * sigma)
-
-    # sizes of series 1 are far more common: another one must fit clearly better
-    def misfit(size: PipeSize) -> float:
-        return abs(size.outer_diameter - wanted) / tolerance + 0.25 * (size.series - 1)
-
     if pick.diameter is not None:
-        exact = min(pipe_sizes(), key=lambda size: abs(size.outer_diameter - wanted))
-        return (exact if abs(exact.outer_diameter - wanted) < 0.05 else None), True
-    best = min(pipe_sizes(), key=misfit)
-    return best, abs(best.outer_diameter - diameter) <= tolerance
-
-
-def _best_distinct(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinders: Cylinders, settings: PickSettings) -> list[Cylinder]:
-    """Return the best cylinders by evidence, at most ``kept``, no two of them the same."""
-    origin = views[pick.camera].camera.projection_centre
-    extents = clicked_extents(cylinders, origin, tangents)
-    distance = np.linalg.norm(cylinders.points - origin, axis=1)
-    scores = _scores(views, pick, tangents, cylinders, extents, 2 * cylinders.radii, settings)
-    scores[(distance < settings.working_range[0]) | (distance > settings.working_range[1])] = -np.inf
-    off = tangents.misfit(cylinders, origin) * views[pick.camera].camera.interior.pixels_per_radian
-    scores[off > max(settings.most_misfit_px, 2 * tangents.sigma_px)] = -np.inf
-    ends = cylinders.points[:, None] + extents[:, :, None] * cylinders.directions[:, None]
-    chosen: list[int] = []
-    for row in np.argsort(-scores):
-        apart = np.linalg.norm(ends[chosen] - ends[row], axis=2).max(axis=1)
-        if np.isfinite(scores[row]) and not (apart < SAME_AXIS * cylinders.radii[row]).any():
-            chosen.append(int(row))
-        if len(chosen) == settings.kept:
-            break
-    return [cylinders.one(row) for row in chosen]
-
-
-def _scores(
-    views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinders: Cylinders, extents: Array, diameters: Array, settings: PickSettings
-) -> Array:
-    """Return the evidence of edges and shading (k,) less what speaks against the size: a misfit of the diameter, a rare series."""
-    # the picked image agrees with every hypothesis: only the others can tell them apart
-    others = [view for number, view in enumerate(views) if number != pick.camera]
-    polarity = tangents.polarity_of(cylinders, views[pick.camera].camera.projection_centre, EvidenceSettings().samples)
-    ratios = evidence(others, cylinders, extents, polarity)
-    known = np.isfinite(ratios)
-    # an image that does not contain a hypothesis speaks neither for nor against it
-    edges = np.where(known, ratios, 0).sum(axis=0) / len(others)
-    alike = likeness(views, pick.camera, cylinders, extents).sum(axis=0) / len(others)
-    scores = np.where(known.any(axis=0), edges + settings.likeness_weight * alike, -np.inf)
-    if pick.diameter == "free":
-        return scores
-    sizes = pipe_sizes() if pick.diameter is None else ()
-    standard = np.array([size.outer_diameter for size in sizes] if sizes else [pick.diameter], float)
-    rarity = np.array([size.series - 1 for size in sizes] or [0], float)
-    width_px = 2 * tangents.half_width * views[pick.camera].camera.interior.pixels_per_radian
-    scatter = np.hypot(settings.diameter_scatter, tangents.sigma_px / width_px)
-    misfit = np.minimum(np.abs(diameters[:, None] / standard - 1) / scatter, MOST_MISFIT)
-    penalty = settings.misfit_penalty * misfit**2 + settings.series_penalty * rarity
-    return np.asarray(scores - penalty.min(axis=1))
+        return pipe_size(pick.diameter), True
+    tolerance = np.hypot(max(settings.tolerance * diameter, settings.least_tolerance), 2 * sigma)
+    best = min(pipe_sizes(), key=lambda size: abs(size.outer_diameter - diameter) / tolerance + SERIES_MISFIT * (size.series - 1))
+    return best, bool(abs(best.outer_diameter - diameter) <= tolerance)
 
 
 def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, settings: PickSettings) -> PipeCandidate:
-    """Follow the pipe to where its edges end and adjust it once more over all of its length."""
-    solution = candidate.solution
-    held = None if pick.diameter == "free" else (solution.cylinder.radius, HELD_RADIUS_SIGMA)
-    extent = extent_of(views, solution.cylinder, candidate.extent, settings.extent)
-    longer = adjust_cylinder(views, solution.cylinder, extent, held, FINAL)
-    if longer is None or longer.support < 0.5 * solution.support:
-        return candidate
-    half = longer.half_length
-    extent = extent_of(views, longer.cylinder, (-half, half), settings.extent)
-    q = _final_quality(views, longer.cylinder, extent, settings)
-    diameter, sigma = (2 * longer.cylinder.radius, 2 * longer.sigma_radius) if held is None else (candidate.diameter, candidate.sigma_diameter)
-    return replace(candidate, solution=longer, extent=extent, quality=q, diameter=diameter, sigma_diameter=sigma)
+    """Hold the standard diameter, follow the pipe to where its edges end, adjust it over all of its length."""
+    solution, extent = candidate.solution, candidate.extent
+    diameter = pick.diameter if isinstance(pick.diameter, float) else candidate.size.outer_diameter if candidate.size else None
+    held = None if diameter is None else (diameter / 2, HELD_RADIUS_SIGMA)
+    solution = adjust_cylinder(views, solution.cylinder, extent, held, FINAL) or solution
+    followed = extent_of(views, solution.cylinder, extent, settings.extent)
+    longer = adjust_cylinder(views, solution.cylinder, followed, held, FINAL)
+    if longer is not None and longer.support >= LEAST_SUPPORT * solution.support:
+        solution = longer
+        extent = extent_of(views, longer.cylinder, (-longer.half_length, longer.half_length), settings.extent)
+    measured = candidate if held else replace(candidate, diameter=2 * solution.cylinder.radius, sigma_diameter=2 * solution.sigma_radius)
+    q = _final_quality(views, solution.cylinder, extent, settings)
+    return replace(measured, solution=solution, extent=extent, quality=q)
 
 
 def _final_quality(views: Sequence[View], cylinder: Cylinder, extent: tuple[float, float], settings: PickSettings) -> float:
     along = np.linspace(*extent, 100)
     distances = []
     for view in views:
-        seen = contour(view.camera, cylinder, along)
-        position, normal = seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2)
+        position, normal = (x.reshape(-1, 2) for x in outlines(view.camera, cylinder.as_many(), along[None]))
         visible = np.isfinite(position[:, 0])
         if np.count_nonzero(visible) >= settings.least_visible * len(position):
             distances.append(match(view.edges, position[visible], normal[visible], settings.final_range).distance)
     return float(quality(np.concatenate(distances), settings.final_range)) if distances else settings.final_range
-
-
-def _in_range(cylinder: Cylinder, origin: Array, settings: PickSettings) -> bool:
-    distance = float(np.linalg.norm(cylinder.point - origin))
-    near, far = settings.working_range
-    return 0.9 * near <= distance <= 1.1 * far
 
 
 def _same(one: PipeCandidate, other: PipeCandidate) -> bool:

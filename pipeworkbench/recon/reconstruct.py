@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,8 @@ import numpy as np
 from pipeworkbench.catalogue import PIPE_STANDARD
 from pipeworkbench.pipeline import Pipe, Pipeline
 from pipeworkbench.recon.picks import Picks, PipePick
-from pipeworkbench.recon.pipes import PickSettings, PipeCandidate, from_pick
+from pipeworkbench.recon.pipes import PipeCandidate, from_pick
+from pipeworkbench.recon.search import PickSettings
 from pipeworkbench.recon.station import Station
 from pipeworkbench.recon.views import View, views_of
 
@@ -20,6 +22,7 @@ log = logging.getLogger(__name__)
 
 # Level of Accuracy of the U.S. Institute of Building Documentation: upper limits in mm at 95 %
 LEVELS_OF_ACCURACY = ((1.0, "LOA50"), (5.0, "LOA40"), (15.0, "LOA30"), (50.0, "LOA20"))
+WORKERS = 2  # picks at a time; more wait for each other's interpreter lock
 COVERAGE_FACTOR = 2.0  # standard deviations in a 95 % interval
 
 
@@ -57,13 +60,21 @@ def reconstruct(
     progress("finding edges", 0, steps)
     views = views_of(station)
     pipes, failed = [], []
-    for done, pick in enumerate(picks.pipes, 1):
-        progress(f"pick {pick.index}", done, steps)
-        pipe = pipe_from_pick(views, pick, station, settings)
-        if pipe is None:
-            failed.append(pick.index)
-        else:
-            pipes.append(pipe)
+    # threads: the array operations release the interpreter lock, and nothing needs to be copied
+    with ThreadPoolExecutor(max_workers=WORKERS) as pool:
+        running = [pool.submit(pipe_from_pick, views, pick, station, settings) for pick in picks.pipes]
+        try:
+            for done, (pick, future) in enumerate(zip(picks.pipes, running, strict=True), 1):
+                progress(f"pick {pick.index}", done, steps)
+                pipe = future.result()
+                if pipe is None:
+                    failed.append(pick.index)
+                else:
+                    pipes.append(pipe)
+        except BaseException:
+            # the user cancelled or a step failed: do not wait for picks that nobody wants
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
     progress("done", steps, steps)
     return Reconstruction(Pipeline.of_station(station.name, tuple(pipes)), tuple(failed), tuple(p.index for p in picks.flanges))
 
