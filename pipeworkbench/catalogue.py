@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import functools
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,6 +35,17 @@ class PipeSize:
         """``DN 40`` where the size has a nominal diameter, else the outside diameter."""
         return f"DN {self.dn}" if self.dn else f"{self.outer_diameter:g} mm"
 
+    def is_sensible(self) -> bool:
+        """Tell whether the figures can be a pipe's and the grades are grades."""
+        wall = self.wall_thickness
+        return (
+            0 < self.outer_diameter < math.inf
+            and (wall is None or 0 < wall < self.outer_diameter / 2)
+            and self.series in (1, 2, 3)
+            and (self.dn is None or self.dn > 0)
+            and {self.verified, self.wall_verified} <= {0, 1, 2, None}
+        )
+
     @property
     def weakest_source(self) -> int:
         """The lower of the two grades."""
@@ -50,22 +62,23 @@ def read_pipe_sizes(path: Path) -> tuple[PipeSize, ...]:
     """Read a table of pipe sizes; lines that start with ``#`` are comments."""
     sizes = []
     with path.open(encoding="utf-8", newline="") as file:
-        numbered = [(number, line) for number, line in enumerate(file, 1) if not line.startswith("#")]
+        numbered = [(number, line) for number, line in enumerate(file, 1) if line.strip() and not line.startswith("#")]
     reader = csv.DictReader(line for _, line in numbered)
     for (number, _), row in zip(numbered[1:], reader, strict=True):
         try:
-            sizes.append(
-                PipeSize(
-                    float(row["outer_diameter"]),
-                    int(row["series"]),
-                    int(row["dn"]) if row["dn"] else None,
-                    float(row["wall_thickness"]) if row["wall_thickness"] else None,
-                    int(row["verified"]),
-                    int(row["wall_verified"]) if row["wall_verified"] else None,
-                )
+            size = PipeSize(
+                float(row["outer_diameter"]),
+                int(row["series"]),
+                int(row["dn"]) if row["dn"] else None,
+                float(row["wall_thickness"]) if row["wall_thickness"] else None,
+                int(row["verified"]),
+                int(row["wall_verified"]) if row["wall_verified"] else None,
             )
         except (KeyError, TypeError, ValueError) as error:
             raise InputError(path, f"line {number}", f"not a pipe size ({error!r})", "correct this row") from None
+        if not size.is_sensible():
+            raise InputError(path, f"line {number}", f"these figures make no pipe ({size})", "correct this row")
+        sizes.append(size)
     return tuple(sorted(sizes, key=lambda size: size.outer_diameter))
 
 

@@ -10,7 +10,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pipeworkbench.errors import InputError
 
@@ -34,13 +34,12 @@ def package_folder(name: str) -> Path:
 
 
 def read_json(path: Path) -> Any:
-    """Read a JSON file; raise InputError where it is missing, unreadable or not JSON."""
+    """Read a JSON file; raise InputError where it is missing, unreadable or not JSON.
 
-    def refuse(constant: str) -> NoReturn:
-        raise ValueError(f"{constant} is not a number")
-
+    NaN and Infinity come through: the checks of the values refuse them and name the key.
+    """
     try:
-        return json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
+        return json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise InputError(path, "", "there is no such file", "check the path") from None
     except IsADirectoryError:
@@ -80,7 +79,7 @@ def _as_input_error(error: Mapping[str, Any], data: object, source: object, pref
     location: list[str | int] = []
     inside: Any = data
     for part in error["loc"]:
-        if (isinstance(inside, Mapping) and part in inside) or (isinstance(inside, list) and isinstance(part, int)):
+        if (isinstance(inside, Mapping) and part in inside) or (isinstance(inside, list | tuple) and isinstance(part, int) and part < len(inside)):
             inside = inside[part]
             location.append(part)
         elif error["type"] == "missing" and part == error["loc"][-1]:

@@ -203,8 +203,8 @@ class Pipeline:
         rest = {"frame": data.get("frame"), "sigma0": data.get("sigma0")}
         if not isinstance(rest["frame"], str):
             raise InputError(source, "frame", "is missing or not a text", "name the station whose level frame is used")
-        if rest["sigma0"] is not None and not isinstance(rest["sigma0"], int | float):
-            raise InputError(source, "sigma0", f"is {rest['sigma0']!r}", "give a number or null")
+        if rest["sigma0"] is not None and not (isinstance(rest["sigma0"], int | float) and math.isfinite(rest["sigma0"])):
+            raise InputError(source, "sigma0", f"is {rest['sigma0']!r}", "give a finite number or null")
         return cls(
             frame=rest["frame"],
             components=components,
@@ -230,7 +230,7 @@ def _list(data: dict[str, Any], key: str, source: object) -> list[Any]:
 
 def _kind_of(item: Any, source: object, index: int) -> type[AnyComponent]:
     kind = item.get("kind") if isinstance(item, dict) else None
-    if kind not in _KINDS:
+    if not isinstance(kind, str) or kind not in _KINDS:
         raise InputError(source, f"components[{index}].kind", f"is {kind!r}", f"use one of {', '.join(_KINDS)}")
     return _KINDS[kind]
 
@@ -243,7 +243,9 @@ def _from_dict(kind: type[Any], item: Any, source: object, location: tuple[str |
     names = {f.name for f in dataclasses.fields(kind)} - {"extra"}
     known = {k: v for k, v in item.items() if k in names}
     made = check(TypeAdapter(kind), known, source, location)
-    return dataclasses.replace(made, extra={k: v for k, v in item.items() if k not in names and k != "kind"})
+    if issubclass(kind, Component):
+        names.add("kind")
+    return dataclasses.replace(made, extra={k: v for k, v in item.items() if k not in names})
 
 
 def _refuse_repeated_ids(components: tuple[AnyComponent, ...], source: object) -> None:

@@ -38,7 +38,7 @@ def straight_pipe(outer_diameter: float, wall_thickness: float | None, length: f
     if not wall_thickness:
         return body
     inner_radius = outer_diameter / 2 - wall_thickness
-    if wall_thickness < 0 or inner_radius <= 0:
+    if not (math.isfinite(wall_thickness) and wall_thickness > 0 and inner_radius > 0):
         raise InputError("pipe", "wall_thickness", f"{wall_thickness:g} mm does not fit into {outer_diameter:g} mm", "give less than the radius")
     return body.cut(solid.makeCylinder(inner_radius, length)).Solids()[0]
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 import uuid
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -185,6 +186,7 @@ class _Builder:
             self.root("IfcRelDefinesByProperties", f"{pipe.id}/{name}", RelatedObjects=[segment], RelatingPropertyDefinition=pset)
 
     def _owner_history(self) -> Any:
+        now = int(time.time())
         organisation = self.add("IfcOrganization", Name=APPLICATION)
         person = self.add("IfcPersonAndOrganization", ThePerson=self.add("IfcPerson", FamilyName="User"), TheOrganization=organisation)
         application = self.add(
@@ -194,7 +196,9 @@ class _Builder:
             ApplicationFullName=APPLICATION,
             ApplicationIdentifier="PipeWorkbench",
         )
-        return self.add("IfcOwnerHistory", OwningUser=person, OwningApplication=application, ChangeAction="ADDED", CreationDate=_now())
+        return self.add(
+            "IfcOwnerHistory", OwningUser=person, OwningApplication=application, ChangeAction="ADDED", LastModifiedDate=now, CreationDate=now
+        )
 
     def _point(self, values: tuple[float, ...]) -> Any:
         return self.add("IfcCartesianPoint", Coordinates=tuple(float(value) for value in values))
@@ -212,9 +216,3 @@ class _Builder:
 
     def _axes_2d(self) -> Any:
         return self.add("IfcAxis2Placement2D", Location=self._point((0.0, 0.0)))
-
-
-def _now() -> int:
-    import time
-
-    return int(time.time())

@@ -45,7 +45,7 @@ class EdgeMap:
 
     position (n, 2) pixels; normal (n, 2) unit, towards the brighter side; gradient (n,) grey values
     per pixel; sigma (n,) expected standard deviation in px along the normal; index (height, width)
-    the row of the point that lies in a pixel, -1 where there is none.
+    the row of the point that lies in a pixel or else beside it, -1 where there is none.
     """
 
     position: Array
@@ -96,9 +96,22 @@ def detect_edges(image: NDArray[np.uint8] | NDArray[np.uint16], settings: EdgeSe
     second_noise = noise[v, u] * float(np.linalg.norm(curvature) * np.linalg.norm(smooth))
     sigma = np.maximum(second_noise / (peak * -bend / obliquity), settings.sigma_floor)
 
-    index = np.full(grey.shape, -1, np.int32)
-    index[v, u] = np.arange(len(u), dtype=np.int32)
-    return EdgeMap(position, normal, peak.astype(float), sigma, index)
+    return EdgeMap(position, normal, peak.astype(float), sigma, _index(grey.shape, u, v))
+
+
+def _index(shape: tuple[int, ...], u: NDArray[np.intp], v: NDArray[np.intp]) -> NDArray[np.int32]:
+    """Return the row of the edge in or beside each pixel (height, width), -1 where there is none.
+
+    Slanted edges are chains of pixels that touch at corners, and a search along the normal steps
+    through between two of them: so the four neighbours of an edge pixel answer for it as well.
+    """
+    rows = np.arange(len(u), dtype=np.int32)
+    index = np.full(shape, -1, np.int32)
+    # candidates keep two pixels from the border: no neighbour is outside
+    for step_u, step_v in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        index[v + step_v, u + step_u] = rows
+    index[v, u] = rows
+    return index
 
 
 def _kernels(sigma: float) -> tuple[Array, Array, Array]:
@@ -119,22 +132,45 @@ def _noise_level(grey: NDArray[np.float32], smooth: Array) -> NDArray[np.float32
     """Return the local standard deviation (height, width) of white noise that would look like the image's.
 
     Immerkaer's mask ("Fast noise variance estimation", CVIU 64(2), 1996) removes planes and steps along
-    the image axes. It is spread to the detector's scale and smoothed alike, because demosaicking,
-    compression and rough surfaces make noise that single pixels do not show. The median over a block
-    leaves single edges out and follows shot noise and shade.
+    two perpendicular directions. It is spread to the detector's scale and smoothed alike, because
+    demosaicking, compression and rough surfaces make noise that single pixels do not show. The median
+    over a block leaves single edges out and follows shot noise and shade. Of the masks along the axes
+    and along the diagonals the smaller answer counts: a step seen by one is removed by the other.
     """
     import cv2
 
-    second_difference = np.zeros(2 * NOISE_SPREAD + 1)
-    second_difference[[0, NOISE_SPREAD, -1]] = 1, -2, 1
-    mask = np.convolve(smooth, second_difference)
-    rough = np.abs(cv2.sepFilter2D(grey, cv2.CV_32F, mask, mask, borderType=cv2.BORDER_REFLECT))
+    reach = NOISE_SPREAD
+    straight = np.zeros((2 * reach + 1, 2 * reach + 1), np.float32)
+    straight[reach, [0, reach, -1]] = 1, -2, 1
+    falling = np.zeros_like(straight)
+    falling[[0, reach, -1], [0, reach, -1]] = 1, -2, 1
+    smoothed = cv2.sepFilter2D(grey, cv2.CV_32F, smooth, smooth, borderType=cv2.BORDER_REFLECT)
+    levels = [
+        _block_level(smoothed, smooth, one, other) for one, other in ((straight, straight.T), (falling, np.ascontiguousarray(falling[:, ::-1])))
+    ]
+    level = np.minimum(*levels)
     height, width = grey.shape
-    rough = np.pad(rough, ((0, -height % NOISE_BLOCK), (0, -width % NOISE_BLOCK)), mode="symmetric")
+    full = cv2.resize(level, (level.shape[1] * NOISE_BLOCK, level.shape[0] * NOISE_BLOCK), interpolation=cv2.INTER_LINEAR)
+    quantisation = np.float32(1 / np.sqrt(12))  # even a noiseless image is known to one grey value only
+    return np.maximum(full[:height, :width], quantisation)
+
+
+def _block_level(smoothed: NDArray[np.float32], smooth: Array, one: NDArray[np.float32], other: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the noise (rows, columns) per block that two second differences in succession see."""
+    import cv2
+
+    def apply(image: NDArray[np.float32]) -> NDArray[np.float32]:
+        first = cv2.filter2D(image, cv2.CV_32F, one, borderType=cv2.BORDER_REFLECT)
+        return np.asarray(cv2.filter2D(first, cv2.CV_32F, other, borderType=cv2.BORDER_REFLECT))
+
+    size = len(smooth) + 4 * len(one)
+    impulse = np.zeros((size, size), np.float32)
+    impulse[size // 2, size // 2] = 1
+    gain = float(np.linalg.norm(apply(cv2.sepFilter2D(impulse, cv2.CV_32F, smooth, smooth))))
+    rough = np.abs(apply(smoothed))
+    rough = np.pad(rough, ((0, -rough.shape[0] % NOISE_BLOCK), (0, -rough.shape[1] % NOISE_BLOCK)), mode="symmetric")
     rows, columns = rough.shape[0] // NOISE_BLOCK, rough.shape[1] // NOISE_BLOCK
     # every second pixel in both directions will do for a median
     blocks = rough.reshape(rows, NOISE_BLOCK, columns, NOISE_BLOCK)[:, ::2, :, ::2]
-    level = np.median(blocks.swapaxes(1, 2).reshape(rows, columns, -1), axis=2) / (GAUSSIAN_MAD * (mask @ mask))
-    full = cv2.resize(level.astype(np.float32), (rough.shape[1], rough.shape[0]), interpolation=cv2.INTER_LINEAR)
-    quantisation = np.float32(1 / np.sqrt(12))  # even a noiseless image is known to one grey value only
-    return np.maximum(full[:height, :width], quantisation)
+    medians = np.median(blocks.swapaxes(1, 2).reshape(rows, columns, -1), axis=2)
+    return np.asarray(medians / (GAUSSIAN_MAD * gain), np.float32)

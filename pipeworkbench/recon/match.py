@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.edges import EdgeMap
 
-STEP_PX = 0.7  # below 1/sqrt(2) no diagonal chain of edge pixels slips through between two look-ups
+STEP_PX = 1.0  # the index answers for the pixels beside an edge too: no edge slips through between look-ups
 CHUNK = 4096  # samples at a time: their look-ups stay in the processor's cache
 LATERAL_PX = 1.0  # an edge point further than this beside the normal belongs to another sample
 LEAST_COSINE = np.cos(np.radians(20))  # largest angle between the contour's and an edge's normal

@@ -8,6 +8,7 @@ is held, the pipe followed to its ends and adjusted over its whole length.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -26,7 +27,7 @@ from pipeworkbench.recon.views import View
 
 COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare candidates
 FINAL = AdjustSettings(ranges=(3.0, 2.0))  # what is settled must not wander off to a neighbour
-HELD_RADIUS_SIGMA = 0.02  # mm; a pseudo-observation with a weight that no image evidence moves
+HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
 SERIES_MISFIT = 0.25  # tolerances: sizes of series 1 are far more common, another must fit that much better
 LEAST_SUPPORT = 0.5  # of the clicked part's: a pipe whose extension finds fewer edges was followed too far
 
@@ -76,10 +77,11 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
     found: list[PipeCandidate] = []
     for cylinder in find_cylinders(views, pick, tangents, settings):
         candidate = _adjusted(views, pick, tangents, cylinder, settings)
-        if candidate is not None and not any(_same(candidate, other) for other in found):
+        if candidate is not None and candidate.score >= settings.hopeless_score and not any(_same(candidate, other) for other in found):
             found.append(candidate)
     found.sort(key=lambda c: -c.score)
-    return tuple(_completed(views, candidate, pick, settings) for candidate in found[:candidates])
+    completed = (_completed(views, candidate, pick, settings) for candidate in found)
+    return tuple(itertools.islice((c for c in completed if _in_range(c, views[pick.camera], settings)), candidates))
 
 
 def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinder: Cylinder, settings: PickSettings) -> PipeCandidate | None:
@@ -133,6 +135,13 @@ def _final_quality(views: Sequence[View], cylinder: Cylinder, extent: tuple[floa
         if np.count_nonzero(visible) >= settings.least_visible * len(position):
             distances.append(match(view.edges, position[visible], normal[visible], settings.final_range).distance)
     return float(quality(np.concatenate(distances), settings.final_range)) if distances else settings.final_range
+
+
+def _in_range(candidate: PipeCandidate, view: View, settings: PickSettings) -> bool:
+    """Tell whether the clicked part of a pipe lies in the working range."""
+    distance = float(np.linalg.norm(candidate.solution.cylinder.point - view.camera.projection_centre))
+    near, far = settings.working_range
+    return near <= distance <= far
 
 
 def _same(one: PipeCandidate, other: PipeCandidate) -> bool:

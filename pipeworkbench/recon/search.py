@@ -45,7 +45,7 @@ class PickSettings:
     The score is the evidence of the edges, plus ``likeness_weight`` times that of the shading, less
     ``misfit_penalty`` for a diameter off the standard's (in units of ``diameter_scatter`` and of what
     the width leaves open) and ``series_penalty`` per series of EN 10220 above the first. Below
-    ``least_score``, or with a diameter off by more than ``tolerance``, a pipe is marked approximate.
+    ``hopeless_score`` there is no pipe; below ``least_score``, or with a diameter off by more than ``tolerance``, a pipe is marked approximate.
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
@@ -64,6 +64,7 @@ class PickSettings:
     series_penalty: float = 0.3
     likeness_weight: float = 0.6
     least_score: float = 1.0
+    hopeless_score: float = -0.5
     most_misfit_px: float = 2.0
     least_visible: float = 0.3  # part of the samples a view must contain to have a say
     extent: ExtentSettings = field(default_factory=ExtentSettings)

@@ -27,7 +27,7 @@ SCHEMA = "pipeworkbench-station/1"
 ORTHONORMAL_TOLERANCE = 1e-5  # largest entry of R R^T - I; files with six decimals stay below it
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)  # what OpenCV's functions take
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Positive = Annotated[Finite, Field(gt=0)]
 Row = tuple[Finite, Finite, Finite]
 RotationMatrix = tuple[Row, Row, Row]
@@ -89,8 +89,8 @@ class _Exterior(BaseModel):
 class _Camera(BaseModel):
     name: Annotated[str, Field(min_length=1)]
     image: Annotated[str, Field(min_length=1)]
-    width: Annotated[int, Field(ge=16)]
-    height: Annotated[int, Field(ge=16)]
+    width: Annotated[int, Field(ge=16, strict=True)]
+    height: Annotated[int, Field(ge=16, strict=True)]
     interior: Annotated[_Photogrammetric | _OpenCV, Field(discriminator="model")]
     exterior: _Exterior
 

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""IFC: valid, in millimetres, and with the pipes where the pipeline has them."""
+
+import gc
+
+import ifcopenshell
+import ifcopenshell.util.placement
+import ifcopenshell.util.unit
+import ifcopenshell.validate
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from pipeworkbench.exports.ifc import ifc_model, write_ifc
+from pipeworkbench.pipeline import Pipe, Pipeline
+
+DN40 = Pipe(
+    id="A-P00",
+    start=(100.0, 3600.0, -50.0),
+    end=(400.0, 3600.0, 350.0),
+    outer_diameter=48.3,
+    wall_thickness=2.6,
+    dn=40,
+    standard="EN 10220",
+    pick=0,
+    station="A",
+    quality=0.21,
+    sigma_position=(0.1, 0.2, 0.3),
+    sigma_direction_deg=0.02,
+    loa="LOA50",
+    verified=2,
+)
+UNKNOWN_WALL = Pipe(id="A-P01", start=(0.0, 4000.0, 0.0), end=(0.0, 4000.0, -700.0), outer_diameter=95.0)
+PIPELINE = Pipeline.of_station("A", (DN40, UNKNOWN_WALL))
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    path = tmp_path_factory.mktemp("ifc") / "pipes.ifc"
+    write_ifc(PIPELINE, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def model(written):
+    return ifcopenshell.open(str(written))
+
+
+def segment(model, name):
+    (found,) = (item for item in model.by_type("IfcPipeSegment") if item.Name == name)
+    return found
+
+
+def body(item):
+    (shape,) = (r for r in item.Representation.Representations if r.RepresentationIdentifier == "Body")
+    (solid,) = shape.Items
+    return solid
+
+
+def properties(item):
+    return {
+        relation.RelatingPropertyDefinition.Name: {p.Name: p.NominalValue.wrappedValue for p in relation.RelatingPropertyDefinition.HasProperties}
+        for relation in item.IsDefinedBy
+    }
+
+
+def axis_of(item):
+    """Return both ends of a segment's axis from its placement and the depth of its extrusion."""
+    placement = ifcopenshell.util.placement.get_local_placement(item.ObjectPlacement)
+    solid = body(item)
+    along = np.array(solid.ExtrudedDirection.DirectionRatios) * solid.Depth
+    start = np.array(solid.Position.Location.Coordinates)
+    return (placement @ [*start, 1.0])[:3], (placement @ [*(start + along), 1.0])[:3]
+
+
+def test_validator_finds_nothing(written):
+    logger = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(str(written), logger)
+    assert logger.statements == []
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")  # the validator leaves files open
+def test_validator_finds_nothing_by_the_schemas_rules_either(written):
+    logger = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(str(written), logger, express_rules=True)
+    gc.collect()
+    assert logger.statements == []
+
+
+def test_schema_is_ifc4_and_lengths_are_millimetres(model):
+    assert model.schema == "IFC4"
+    assert ifcopenshell.util.unit.calculate_unit_scale(model) == pytest.approx(0.001)
+
+
+def test_segments_hang_in_project_site_building_and_storey(model):
+    item = segment(model, "A-P00")
+    (contained,) = item.ContainedInStructure
+    chain = [contained.RelatingStructure]
+    while chain[-1].Decomposes:
+        chain.append(chain[-1].Decomposes[0].RelatingObject)
+    assert [part.is_a() for part in chain] == ["IfcBuildingStorey", "IfcBuilding", "IfcSite", "IfcProject"]
+    assert chain[-1].Name == "A"
+    assert len(model.by_type("IfcProject")) == 1
+
+
+def test_every_pipe_is_a_segment_with_its_id(model):
+    assert [item.Name for item in model.by_type("IfcPipeSegment")] == ["A-P00", "A-P01"]
+
+
+def test_known_wall_gives_a_hollow_profile(model):
+    profile = body(segment(model, "A-P00")).SweptArea
+    assert profile.is_a("IfcCircleHollowProfileDef")
+    assert pytest.approx(24.15) == profile.Radius
+    assert pytest.approx(2.6) == profile.WallThickness
+
+
+def test_unknown_wall_gives_a_full_profile(model):
+    profile = body(segment(model, "A-P01")).SweptArea
+    assert profile.is_a() == "IfcCircleProfileDef"
+    assert pytest.approx(47.5) == profile.Radius
+    assert "InnerDiameter" not in properties(segment(model, "A-P01"))["Pset_PipeSegmentTypeCommon"]
+
+
+@pytest.mark.parametrize("pipe", PIPELINE.pipes, ids=lambda pipe: pipe.id)
+def test_placement_and_depth_give_the_ends_of_the_axis(model, pipe):
+    start, end = axis_of(segment(model, pipe.id))
+    assert start == pytest.approx(pipe.start, abs=1e-6)
+    assert end == pytest.approx(pipe.end, abs=1e-6)
+
+
+@pytest.mark.parametrize("pipe", PIPELINE.pipes, ids=lambda pipe: pipe.id)
+def test_axis_representation_is_the_pipes_axis(model, pipe):
+    item = segment(model, pipe.id)
+    (shape,) = (r for r in item.Representation.Representations if r.RepresentationIdentifier == "Axis")
+    placement = ifcopenshell.util.placement.get_local_placement(item.ObjectPlacement)
+    first, last = (placement @ [*point.Coordinates, 1.0] for point in shape.Items[0].Points)
+    assert first[:3] == pytest.approx(pipe.start, abs=1e-6)
+    assert last[:3] == pytest.approx(pipe.end, abs=1e-6)
+
+
+coordinates = st.floats(-1e5, 1e5)
+points = st.tuples(coordinates, coordinates, coordinates)
+
+
+@given(points, points)
+def test_any_axis_is_placed_exactly_with_a_right_handed_frame(start, end):
+    assume(np.linalg.norm(np.subtract(end, start)) > 1.0)
+    pipe = Pipe(id="P", start=start, end=end, outer_diameter=60.3)
+    made = ifc_model(Pipeline(frame="A", components=(pipe,)))  # entities live as long as their file
+    (item,) = made.by_type("IfcPipeSegment")
+    found_start, found_end = axis_of(item)
+    assert found_start == pytest.approx(start, abs=1e-6)
+    assert found_end == pytest.approx(end, abs=1e-6)
+    rotation = ifcopenshell.util.placement.get_local_placement(item.ObjectPlacement)[:3, :3]
+    assert rotation @ rotation.T == pytest.approx(np.eye(3), abs=1e-9)
+    assert np.linalg.det(rotation) == pytest.approx(1.0)
+
+
+def test_measurement_and_dimensions_are_properties(model):
+    sets = properties(segment(model, "A-P00"))
+    dimensions, measurement = sets["Pset_PipeSegmentTypeCommon"], sets["PipeWorkbench_Measurement"]
+    assert dimensions["NominalDiameter"] == 40
+    assert dimensions["OuterDiameter"] == pytest.approx(48.3)
+    assert dimensions["InnerDiameter"] == pytest.approx(48.3 - 2 * 2.6)
+    assert dimensions["Length"] == pytest.approx(500.0)
+    assert [measurement[f"Sigma{axis}"] for axis in "XYZ"] == pytest.approx([0.1, 0.2, 0.3])
+    assert measurement["Standard"] == "EN 10220"
+    assert measurement["VerifiedSources"] == 2
+
+
+def test_unverified_dimensions_are_marked():
+    pipe = Pipe(id="P", start=(0.0, 0.0, 0.0), end=(0.0, 0.0, 9.0), outer_diameter=10.2, verified=0)
+    made = ifc_model(Pipeline(frame="A", components=(pipe,)))  # entities live as long as their file
+    (item,) = made.by_type("IfcPipeSegment")
+    assert properties(item)["PipeWorkbench_Measurement"]["VerifiedSources"] == 0
+
+
+def test_same_pipeline_gives_the_same_global_ids(model, tmp_path):
+    write_ifc(PIPELINE, tmp_path / "again.ifc")
+    again = ifcopenshell.open(str(tmp_path / "again.ifc"))
+    ids = [item.GlobalId for item in model.by_type("IfcRoot")]
+    assert [item.GlobalId for item in again.by_type("IfcRoot")] == ids
+    assert len(set(ids)) == len(ids)
+
+
+def test_another_project_gives_other_global_ids(model):
+    other = ifc_model(Pipeline.of_station("B", PIPELINE.pipes))
+    assert not {item.GlobalId for item in model.by_type("IfcRoot")} & {item.GlobalId for item in other.by_type("IfcRoot")}
+
+
+def test_pipeline_without_pipes_is_valid_too(tmp_path):
+    path = tmp_path / "empty.ifc"
+    write_ifc(Pipeline(frame="A"), path)
+    logger = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(str(path), logger)
+    assert logger.statements == []
+    assert [entry.name for entry in tmp_path.iterdir()] == ["empty.ifc"]

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tables: the CSV as a spreadsheet reads it and the rows on the terminal."""
+
+import csv
+
+import pytest
+
+from pipeworkbench.exports.tables import TERMINAL_COLUMNS, terminal_row, write_csv
+from pipeworkbench.pipeline import Pipe, Pipeline
+
+MEASURED = Pipe(
+    id="A-P00",
+    start=(100.0, 3600.0, -50.0),
+    end=(400.0, 3600.0, 350.0),
+    outer_diameter=48.3,
+    wall_thickness=2.6,
+    dn=40,
+    standard="EN 10220",
+    pick=0,
+    station="A",
+    quality=0.2134,
+    sigma_position=(0.02, 0.12, 0.03),
+    sigma_direction_deg=0.015,
+    sigma_outer_diameter=0.11,
+    loa="LOA50",
+    verified=2,
+)
+UNVERIFIED = Pipe(
+    id="A-P01", start=(0.0, 0.0, 0.0), end=(0.0, 0.0, 80.0), outer_diameter=10.2, dn=6, wall_thickness=1.6, verified=0, approximate=True
+)
+BARE = Pipe(id='odd, "name"', start=(0.0, 0.0, 0.0), end=(12.5, 0.0, 0.0), outer_diameter=95.0)
+
+
+@pytest.fixture
+def rows(tmp_path):
+    path = tmp_path / "pipes.csv"
+    write_csv(Pipeline.of_station("A", (MEASURED, UNVERIFIED, BARE)), path)
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_every_pipe_is_a_row_and_every_cell_has_a_column(rows):
+    assert [row["id"] for row in rows] == ["A-P00", "A-P01", 'odd, "name"']
+    assert all(None not in row and None not in row.values() for row in rows)
+
+
+def test_geometry_is_read_back(rows):
+    row = rows[0]
+    assert [float(row[f"start_{axis}_mm"]) for axis in "xyz"] == [100.0, 3600.0, -50.0]
+    assert [float(row[f"end_{axis}_mm"]) for axis in "xyz"] == [400.0, 3600.0, 350.0]
+    assert float(row["length_mm"]) == pytest.approx(500.0)
+    assert (float(row["outer_diameter_mm"]), float(row["wall_thickness_mm"]), int(row["dn"])) == (48.3, 2.6, 40)
+
+
+def test_accuracy_is_read_back(rows):
+    row = rows[0]
+    assert [float(row[f"sigma_{axis}_mm"]) for axis in "xyz"] == [0.02, 0.12, 0.03]
+    assert (float(row["quality_px"]), float(row["sigma_direction_deg"]), float(row["sigma_outer_diameter_mm"])) == (0.2134, 0.015, 0.11)
+    assert (row["loa"], row["approximate"], row["verified_sources"], row["pick"], row["kind"]) == ("LOA50", "no", "2", "0", "pipe")
+
+
+def test_unverified_dimensions_are_marked(rows):
+    assert rows[1]["verified_sources"] == "0"
+    assert rows[1]["approximate"] == "yes"
+    remarks = dict(zip(TERMINAL_COLUMNS, terminal_row(UNVERIFIED), strict=True))["remarks"]
+    assert "not verified" in remarks
+    assert "approximate" in remarks
+
+
+def test_verified_dimensions_are_not_marked():
+    assert dict(zip(TERMINAL_COLUMNS, terminal_row(MEASURED), strict=True))["remarks"] == ""
+
+
+def test_what_is_not_known_is_left_empty(rows):
+    for column in ("pick", "station", "standard", "dn", "wall_thickness_mm", "verified_sources", "quality_px", "sigma_y_mm", "loa"):
+        assert rows[2][column] == ""
+
+
+def test_terminal_row_has_the_rounded_figures():
+    row = dict(zip(TERMINAL_COLUMNS, terminal_row(MEASURED), strict=True))
+    assert (row["pick"], row["DN"], row["outside diameter"], row["length"]) == ("0", "40", "48.3 mm", "500 mm")
+    assert row["quality"] == "0.21 px"
+    assert row["sigma"] == "0.13 mm"  # the root of 0.02^2 + 0.12^2 + 0.03^2
+
+
+def test_terminal_row_of_a_pipe_without_measurement_has_dashes():
+    row = dict(zip(TERMINAL_COLUMNS, terminal_row(BARE), strict=True))
+    assert (row["pick"], row["DN"], row["quality"], row["sigma"]) == ("-", "-", "-", "-")
