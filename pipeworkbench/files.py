@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import difflib
 import json
+import math
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -34,12 +35,11 @@ def package_folder(name: str) -> Path:
 
 
 def read_json(path: Path) -> Any:
-    """Read a JSON file; raise InputError where it is missing, unreadable or not JSON.
-
-    NaN and Infinity come through: the checks of the values refuse them and name the key.
-    """
+    """Read a JSON file; raise InputError where it is missing, unreadable, not JSON or holds NaN or Infinity."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(path.read_text(encoding="utf-8"))
+        # Python's reader takes NaN and Infinity, and makes infinity of 1e999
+        location = next(_not_finite(data), None)
     except FileNotFoundError:
         raise InputError(path, "", "there is no such file", "check the path") from None
     except IsADirectoryError:
@@ -51,6 +51,21 @@ def read_json(path: Path) -> Any:
         raise InputError(path, "", f"not valid JSON ({error})", "write it anew as UTF-8 JSON") from None
     except OSError as error:
         raise InputError(path, "", f"cannot be read ({error.strerror})", "check the permissions") from None
+    if location is not None:
+        raise InputError(path, key_path(location), "is not a finite number", "give a number")
+    return data
+
+
+def _not_finite(data: object, location: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """Yield the locations of numbers that are not finite."""
+    if isinstance(data, float) and not math.isfinite(data):
+        yield location
+    elif isinstance(data, dict):
+        for key, value in data.items():
+            yield from _not_finite(value, (*location, key))
+    elif isinstance(data, list):
+        for index, value in enumerate(data):
+            yield from _not_finite(value, (*location, index))
 
 
 def key_path(location: Iterable[str | int]) -> str:

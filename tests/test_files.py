@@ -125,7 +125,7 @@ def test_constants_that_json_does_not_know_are_refused(tmp_path, constant):
     path.write_text(f'{{"a": {constant}}}', encoding="utf-8")
     with pytest.raises(InputError) as error:
         read_json(path)
-    assert constant in str(error.value)
+    assert error.value.key == "a"
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="the superuser may read everything")

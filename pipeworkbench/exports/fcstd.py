@@ -25,6 +25,20 @@ JOB_VARIABLE = "PIPEWORKBENCH_JOB"
 TIMEOUT_S = 600.0
 
 
+def find_freecad() -> str:
+    """Return FreeCAD's command-line program.
+
+    Raises
+    ------
+    MissingPackageError
+        Where there is none; says how to install or name it.
+    """
+    program = os.environ.get(PROGRAM_VARIABLE) or next(filter(None, map(shutil.which, PROGRAMS)), None)
+    if program is None:
+        raise MissingPackageError("FreeCAD", "Writing FCStd", f"apt-get install freecad (or name freecadcmd in {PROGRAM_VARIABLE})")
+    return program
+
+
 def write_fcstd(pipeline: Pipeline, path: Path, stations: Sequence[Station] = ()) -> None:
     """Write a document with a parametric object per component.
 
@@ -35,9 +49,7 @@ def write_fcstd(pipeline: Pipeline, path: Path, stations: Sequence[Station] = ()
     PipeWorkbenchError
         Where FreeCAD could not do it; says what FreeCAD said.
     """
-    program = os.environ.get(PROGRAM_VARIABLE) or next(filter(None, map(shutil.which, PROGRAMS)), None)
-    if program is None:
-        raise MissingPackageError("FreeCAD", "Writing FCStd", f"apt-get install freecad (or name freecadcmd in {PROGRAM_VARIABLE})")
+    program = find_freecad()
     package = Path(pipeworkbench.__file__).parent
     with written_whole(path) as temporary, tempfile.TemporaryDirectory() as folder:
         pipeline_file, job_file, answer_file = (Path(folder) / name for name in ("pipeline.json", "job.json", "answer.json"))

@@ -32,7 +32,7 @@ WRITERS: dict[str, Callable[[Result, Path], None]] = {
 
 
 def check_paths(paths: Sequence[Path], *, has_photographs: bool = True) -> None:
-    """Refuse endings nobody writes, folders that do not exist and one name given twice.
+    """Refuse, before anything is computed, what could not be written: unknown endings, missing folders, one name twice.
 
     ``has_photographs`` is False where there is no station at hand, so that no picture can be drawn.
     """
@@ -40,6 +40,8 @@ def check_paths(paths: Sequence[Path], *, has_photographs: bool = True) -> None:
     for path in paths:
         if path.suffix.lower() not in WRITERS:
             raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(WRITERS)}")
+        if path.suffix.lower() == ".fcstd":
+            fcstd.find_freecad()
         if path.suffix.lower() == ".png" and not has_photographs:
             raise InputError(path, "", "a picture needs the station's photographs", "name the station")
         if not path.parent.is_dir():
