@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 NEWTON_ITERATIONS = 20
-NEWTON_TOLERANCE = 1e-12  # of the ideal coordinates; 1e-8 px at a principal distance of 10,000 px
+NEWTON_TOLERANCE = 1e-6  # of the coordinates, BEFORE the last step, which squares what is missing
 FIELD_MARGIN = 1.15  # points beyond the image corner's field angle by more than this are not projected
 
 
@@ -248,10 +248,10 @@ def _newton(function: Callable[[Array], tuple[Array, Array]], target: Array, sta
             value, derivative = function(x)
             missing = target - value
             residual = np.abs(missing).max(axis=1)
+            x += np.einsum("nij,nj->ni", _inverse_2x2(derivative), missing)
             if not np.any(residual > NEWTON_TOLERANCE * scale):
                 break
-            x += np.einsum("nij,nj->ni", _inverse_2x2(derivative), missing)
-        return x, residual <= 1e3 * NEWTON_TOLERANCE * scale
+        return x, residual <= NEWTON_TOLERANCE * scale
 
 
 def _inverse_2x2(matrices: Array) -> Array:
