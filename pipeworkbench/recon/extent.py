@@ -24,7 +24,7 @@ class ExtentSettings:
     """
 
     reach: float = 1.5
-    bridge: float = 0.9
+    bridge: float = 1.05
     window: float = 0.3
     evidence: float = 0.6
     sample: float = 0.04

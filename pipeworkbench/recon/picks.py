@@ -91,6 +91,8 @@ def picks_from(data: Any, station: Station, source: object = "picks") -> Picks:
     named = data.get("station")
     if named is not None and named != station.name:
         raise InputError(source, "station", f"is '{named}' but the station is '{station.name}'", "give the picks of this station")
+    if data.get("picks") == []:
+        raise InputError(source, "picks", "the list is empty", "click the edges of at least one pipe")
     file = check(TypeAdapter(_Picks), data, source)
     pipes, flanges = [], []
     for index, pick in enumerate(file.picks):
