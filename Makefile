@@ -15,7 +15,7 @@ demo: setup  ## reconstruct the bundled sample and say where the results are
 	$(python) -m pipeworkbench reconstruct resources/samples/dummy/A \
 	  --out $(results)/dummy.json --out $(results)/dummy.csv --out $(results)/dummy.png \
 	  --out $(results)/dummy.ifc --out $(results)/dummy.step --out $(results)/dummy.FCStd
-	@echo "The results are in $(abspath $(results)): look at dummy.png first, then open dummy.FCStd in FreeCAD."
+	@echo "The results are in $(abspath $(results)): look at dummy.png first; then make install, and open dummy.FCStd in FreeCAD."
 
 test: setup  ## run every test: plain, inside FreeCAD, inside FreeCAD's window
 	@bash scripts/test.sh

@@ -7,6 +7,7 @@ Exit status 0 done; 2 bad input, one line on stderr that names the file and what
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import logging
 import sys
@@ -22,6 +23,7 @@ from pipeworkbench.errors import InputError, PipeWorkbenchError
 if TYPE_CHECKING:
     from pipeworkbench.recon.reconstruct import Reconstruction
 
+SMALLEST_MM, LARGEST_MM, NEAREST_MM = 1.0, 200_000.0, 200.0  # of ranges that make sense
 DONE, DEFECT, BAD_INPUT = 0, 1, 2
 
 
@@ -34,6 +36,10 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status."""
+    # a terminal that cannot show a name must not end the program
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     parser = _parser()
     options = parser.parse_args(arguments)
     logging.basicConfig(level=logging.ERROR if options.quiet else logging.WARNING, format="%(levelname)s: %(message)s")
@@ -73,28 +79,37 @@ def _reconstruct(options: argparse.Namespace) -> int:
     from pipeworkbench.exports.writers import Result, check_paths, write
     from pipeworkbench.recon.picks import read_picks
     from pipeworkbench.recon.reconstruct import reconstruct
-    from pipeworkbench.recon.search import PickSettings
+    from pipeworkbench.recon.search import PickSettings, sizes_in
     from pipeworkbench.recon.station import read_station
 
     began = time.perf_counter()
     check_paths(options.out)
     station = read_station(options.station)
-    picks = read_picks(options.picks or station.source.parent / "picks.json", station)
+    picks_file = options.picks or station.source.parent / "picks.json"
+    check_paths(options.out, inputs=(station.source, picks_file, *station.images))
+    picks = read_picks(picks_file, station)
+    if not picks.pipes:
+        raise InputError(picks_file, "picks", "there are only flange picks, and flanges are not reconstructed yet", "pick pipes too")
     settings = PickSettings()
     if options.working_range is not None:
         settings = replace(settings, working_range=_range(options.working_range, "--working-range"))
+        if settings.working_range[0] < NEAREST_MM:
+            raise InputError("the command line", "--working-range", "begins inside the rig", f"begin at {NEAREST_MM:g} mm or more")
     if options.diameters is not None:
         settings = replace(settings, diameter_range=_range(options.diameters, "--diameters"))
+        if not sizes_in(settings) and any(pick.diameter is None for pick in picks.pipes):
+            raise InputError("the command line", "--diameters", "holds no diameter of EN 10220", "widen it, or pick with a free diameter")
 
     show = not options.quiet and not options.json
     with _Progress(show=show) as progress:
         found = reconstruct(station, picks, settings, progress)
     if not found.pipeline.components:
         raise InputError(
-            options.picks or station.source.parent / "picks.json",
+            picks_file,
             "picks",
             "no pipe fits the images",
-            "check that the picks are on pipe edges and that the calibration belongs to the photographs",
+            "check that the picks are on pipe edges, that the calibration belongs to the photographs and that "
+            "working range and diameters hold the pipes",
         )
     result = Result(found.pipeline, (station,))
     for path in options.out:
@@ -109,8 +124,9 @@ def _reconstruct(options: argparse.Namespace) -> int:
 
 def _range(values: Sequence[float], key: str) -> tuple[float, float]:
     low, high = values
-    if not 0 < low < high < float("inf"):
-        raise InputError("the command line", key, f"{low:g} to {high:g} is no range", "give two positive mm, the smaller first")
+    if not SMALLEST_MM <= low < high <= LARGEST_MM:
+        limits = f"between {SMALLEST_MM:g} and {LARGEST_MM:g} mm"
+        raise InputError("the command line", key, f"{low:g} to {high:g} is no range", f"give two lengths {limits}, the smaller first")
     return low, high
 
 

@@ -6,6 +6,11 @@ class PipeWorkbenchError(Exception):
     """One sentence that says which file or object, what is wrong and what to do."""
 
 
+def one_line(text: str) -> str:
+    """Return a text with control characters escaped: names from files must not break up a message."""
+    return "".join(character if character.isprintable() else repr(character)[1:-1] for character in text)
+
+
 class InputError(PipeWorkbenchError):
     """Something from outside does not fit.
 
@@ -24,7 +29,7 @@ class InputError(PipeWorkbenchError):
     def __init__(self, source: object, key: str, problem: str, remedy: str) -> None:
         self.source, self.key, self.problem, self.remedy = str(source), key, problem, remedy
         where = f"{source}: {key}" if key else f"{source}"
-        super().__init__(f"{where}: {problem}; {remedy}")
+        super().__init__(one_line(f"{where}: {problem}; {remedy}"))
 
 
 class MissingPackageError(PipeWorkbenchError):

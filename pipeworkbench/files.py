@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pipeworkbench.errors import InputError
+from pipeworkbench.errors import InputError, one_line
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter
@@ -122,7 +122,7 @@ def warn_of_unknown_keys(data: Mapping[str, Any], known: Iterable[str], source: 
         path = f"{location}.{key}" if location else key
         if close:
             raise InputError(source, path, "unknown key", f"did you mean '{close[0]}'?")
-        warn(f"{source}: {path}: unknown key, ignored")
+        warn(one_line(f"{source}: {path}: unknown key, ignored"))
 
 
 @contextlib.contextmanager

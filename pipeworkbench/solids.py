@@ -19,7 +19,7 @@ def _cadquery() -> type[cadquery.Solid]:
     try:
         import cadquery
     except ImportError:
-        raise MissingPackageError("CadQuery", "Making solids", "pip install 'cadquery>=2.4,<2.5'") from None
+        raise MissingPackageError("CadQuery", "Making solids", "pip install 'cadquery>=2.4,<2.9'") from None
     return cadquery.Solid
 
 

@@ -361,6 +361,91 @@ def test_range_that_is_none_is_refused(sample, refusal, option, values):
 
 
 @pytest.mark.parametrize(
+    ("option", "values"),
+    [
+        ("--working-range", ("1", "1e300")),
+        ("--working-range", ("1", "5000")),
+        ("--working-range", ("1e-300", "1e-299")),
+        ("--diameters", ("49", "50")),
+    ],
+)
+def test_range_that_holds_nothing_sensible_is_refused(sample, refusal, option, values):
+    assert option in refusal(sample, option, *values)
+
+
+@pytest.mark.parametrize("name", ["station.json", "picks.json"])
+def test_output_over_an_input_is_refused_and_the_input_kept(altered, refusal, name):
+    folder = altered()
+    before = (folder / name).read_bytes()
+    assert "is an input" in refusal(folder, output=folder / name)
+    assert (folder / name).read_bytes() == before
+
+
+def test_output_name_that_no_disk_takes_is_refused(sample, out, refusal):
+    assert "too long" in refusal(sample, output=out / ("x" * 300 + ".json"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"A1": 1000.0},
+        {"A1": 1e300},
+        {"A2": 1.0},
+        {"principal_distance": 0.001},
+        {"principal_distance": 1e300},
+        {"principal_point": [1e9, 0.0]},
+        {"pixel_pitch": 1e-300},
+    ],
+    ids=str,
+)
+def test_lens_that_cannot_be_is_refused(altered, refusal, change):
+    line = refusal(altered(station=lambda s: s["cameras"][1]["interior"].update(change)))
+    assert "station.json: cameras[1].interior:" in line
+
+
+OPENCV = {"model": "opencv", "fx": 6500.0, "fy": 6500.0, "cx": 1295.5, "cy": 971.5, "distortion": [-0.3, 0.1, 0, 0]}
+
+
+def test_opencv_lens_of_a_real_kind_is_taken(altered):
+    station = read_station(altered(station=lambda s: s["cameras"][1].update(interior=OPENCV)))
+    assert station.cameras[1].interior.fx == 6500
+
+
+@pytest.mark.parametrize("distortion", [[1e6, 0, 0, 0], [-5.0, 0, 0, 0], [1e300, 0, 0, 0]])
+def test_opencv_distortion_that_folds_the_image_is_refused(altered, refusal, distortion):
+    folded = OPENCV | {"fx": 1500.0, "fy": 1500.0, "distortion": distortion}
+    assert "cameras[1].interior:" in refusal(altered(station=lambda s: s["cameras"][1].update(interior=folded)))
+
+
+@pytest.mark.parametrize("centre", [[1e9, 0.0, 0.0], [1e300, 0.0, 0.0]])
+def test_camera_a_world_away_is_refused(altered, refusal, centre):
+    line = refusal(altered(station=lambda s: s["cameras"][1]["exterior"].update(projection_centre=centre)))
+    assert "cameras[1].exterior.projection_centre[0]:" in line
+
+
+def test_image_given_for_two_cameras_is_refused(altered, refusal):
+    assert "cameras[1].image:" in refusal(altered(station=lambda s: s["cameras"][1].update(image="left.jpg")))
+
+
+def test_image_name_that_no_disk_takes_is_refused(altered, refusal):
+    assert "cameras[1].image:" in refusal(altered(station=lambda s: s["cameras"][1].update(image="x" * 5000)))
+
+
+def test_control_characters_of_a_name_do_not_break_up_the_message(altered, refusal):
+    line = refusal(altered(station=lambda s: s["cameras"][1].update(image="one\ntwo\x1b[31m.jpg")))
+    assert "one\\ntwo\\x1b" in line
+
+
+def test_picks_given_as_the_station_are_told_by_their_schema(sample, refusal):
+    assert "picks.json: schema:" in refusal(sample / "picks.json")
+
+
+def test_flange_picks_alone_are_told_as_such(altered, refusal):
+    line = refusal(altered(picks=lambda p: p.update(picks=[pick for pick in p["picks"] if pick["kind"] == "flange"])))
+    assert "only flange picks" in line
+
+
+@pytest.mark.parametrize(
     "arguments",
     [[], ["rebuild"], ["reconstruct"], ["reconstruct", "somewhere"], ["reconstruct", "somewhere", "--out", "a.json", "--diameters", "few", "many"]],
 )

@@ -33,7 +33,10 @@ def find_freecad() -> str:
     MissingPackageError
         Where there is none; says how to install or name it.
     """
-    program = os.environ.get(PROGRAM_VARIABLE) or next(filter(None, map(shutil.which, PROGRAMS)), None)
+    named = os.environ.get(PROGRAM_VARIABLE)
+    if named and shutil.which(named) is None:
+        raise PipeWorkbenchError(f"{named}: cannot be started (no such program); correct {PROGRAM_VARIABLE}")
+    program = named or next(filter(None, map(shutil.which, PROGRAMS)), None)
     if program is None:
         raise MissingPackageError("FreeCAD", "Writing FCStd", f"apt-get install freecad (or name freecadcmd in {PROGRAM_VARIABLE})")
     return program
@@ -80,4 +83,4 @@ def write_fcstd(pipeline: Pipeline, path: Path, stations: Sequence[Station] = ()
 
 def _last_words(done: subprocess.CompletedProcess[str]) -> str:
     lines = (done.stderr.strip() or done.stdout.strip()).splitlines()
-    return lines[-1] if lines else f"it ended with status {done.returncode} and said nothing"
+    return lines[-1] if lines else f"it ended with status {done.returncode} and said nothing; is it FreeCAD's command-line program?"

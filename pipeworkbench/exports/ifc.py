@@ -160,7 +160,7 @@ class _Builder:
         dimensions = {
             "NominalDiameter": ("IfcPositiveLengthMeasure", pipe.dn),
             "OuterDiameter": ("IfcPositiveLengthMeasure", pipe.outer_diameter),
-            "InnerDiameter": ("IfcPositiveLengthMeasure", pipe.wall_thickness and pipe.outer_diameter - 2 * pipe.wall_thickness),
+            "InnerDiameter": ("IfcPositiveLengthMeasure", pipe.wall_thickness and round(pipe.outer_diameter - 2 * pipe.wall_thickness, 6)),
             "Length": ("IfcPositiveLengthMeasure", pipe.length),
         }
         sigma = pipe.sigma_position or (None, None, None)

@@ -20,7 +20,7 @@ from pipeworkbench.recon.station import Station, read_image
 PICTURE_WIDTH = 1296  # px of each photograph in the picture
 SAMPLES = 200  # along a pipe; its edges are curves where the lens distorts
 SUBPIXEL_BITS = 4  # of OpenCV's fixed-point drawing coordinates
-# dark-adapted, colour-blind safe (Okabe and Ito), BGR
+# red, green, blue; told apart by colour-blind people too (Okabe and Ito), but for the last
 COLOURS = ((86, 180, 233), (230, 159, 0), (0, 158, 115), (240, 228, 66), (213, 94, 0), (204, 121, 167), (120, 190, 255))
 GREY_PERCENTILES = (0.5, 99.5)  # dim photographs are stretched to this range for the eye
 

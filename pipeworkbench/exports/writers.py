@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,8 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.exports import fcstd, ifc, pictures, step, tables
 from pipeworkbench.pipeline import Pipeline
 from pipeworkbench.recon.station import Station
+
+LONGEST_NAME = 200  # bytes; file systems take 255, and the temporary name beside it is longer
 
 
 @dataclass(frozen=True)
@@ -31,23 +34,29 @@ WRITERS: dict[str, Callable[[Result, Path], None]] = {
 }
 
 
-def check_paths(paths: Sequence[Path], *, has_photographs: bool = True) -> None:
+def check_paths(paths: Sequence[Path], *, has_photographs: bool = True, inputs: Sequence[Path] = ()) -> None:
     """Refuse, before anything is computed, what could not be written: unknown endings, missing folders, one name twice.
 
-    ``has_photographs`` is False where there is no station at hand, so that no picture can be drawn.
+    ``inputs`` are files that must not be overwritten; ``has_photographs`` is False where there is no
+    station at hand, so that no picture can be drawn.
     """
     seen = set()
+    kept = {path.resolve() for path in inputs}
     for path in paths:
         if path.suffix.lower() not in WRITERS:
-            raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(WRITERS)}")
+            raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(WRITERS).replace('fcstd', 'FCStd')}")
         if path.suffix.lower() == ".fcstd":
             fcstd.find_freecad()
         if path.suffix.lower() == ".png" and not has_photographs:
             raise InputError(path, "", "a picture needs the station's photographs", "name the station")
+        if len(os.fsencode(path.name)) > LONGEST_NAME:
+            raise InputError(path, "", "the name is too long", "choose a shorter one")
         if not path.parent.is_dir():
             raise InputError(path, "", f"there is no folder {path.parent}", "make it first or correct the path")
         if path.is_dir():
             raise InputError(path, "", "is a folder", "name a file")
+        if path.resolve() in kept:
+            raise InputError(path, "", "is an input of this run", "choose another name: it would be lost")
         if path.resolve() in seen:
             raise InputError(path, "", "is given twice as an output", "name each output once")
         seen.add(path.resolve())

@@ -71,5 +71,7 @@ def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline
     if not pipes:
         raise InputError(document.Label, "", "the document has no pipes", "reconstruct some picks first")
     stations = stations_in(document)
-    frame = stations[0].StationName if stations else document.Label
+    if len({obj.StationName for obj in pipes if obj.StationName}) > 1:
+        raise InputError(document.Label, "", "the pipes come from several stations that are not merged", "select the pipes of one station")
+    frame = pipes[0].StationName or (stations[0].StationName if stations else document.Label)
     return Pipeline.of_station(frame, tuple(pipe_of(obj) for obj in pipes))

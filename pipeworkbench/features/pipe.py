@@ -15,6 +15,7 @@ from pipeworkbench.pipeline import Pipe
 
 NO_NOMINAL_DIAMETER = "none"
 NO_PICK = -1
+SAME_MM = 1e-3  # what a geometry may differ from the measured one and still be it
 GRADES = {None: "", 0: "not verified", 1: "one source", 2: "two sources or more"}
 
 
@@ -43,6 +44,7 @@ class PipeFeature(Feature):
         Property("StationName", "App::PropertyString", "Measurement", "Station that measured the pipe", READ_ONLY),
         Property("Pick", "App::PropertyInteger", "Measurement", "Index of the pick that made the pipe, -1 for none", READ_ONLY),
         Property("ComponentId", "App::PropertyString", "Base", "Identity in exchange files", READ_ONLY),
+        Property("MeasuredAs", "App::PropertyString", "Base", "The geometry that the measurement belongs to (JSON)", HIDDEN),
         Property("Extra", "App::PropertyString", "Base", "What other programs said of the component (JSON)", HIDDEN),
     )
 
@@ -78,6 +80,8 @@ class PipeFeature(Feature):
                 obj.WallThickness = size.wall_thickness or 0
             return
         size = pipe_size(obj.OutsideDiameter.Value)
+        if size is not None and size.wall_thickness and obj.NominalDiameter != size.designation:
+            obj.WallThickness = size.wall_thickness
         obj.Standard = PIPE_STANDARD if size else ""
         obj.StandardSources = GRADES[size.weakest_source if size else None]
         nominal = size.designation if size and size.dn else NO_NOMINAL_DIAMETER
@@ -103,6 +107,7 @@ def set_pipe(obj: Any, pipe: Pipe) -> None:
     obj.StandardSources = GRADES[pipe.verified]
     start, end = FreeCAD.Vector(*pipe.start), FreeCAD.Vector(*pipe.end)
     obj.Placement = FreeCAD.Placement(start, FreeCAD.Rotation(FreeCAD.Vector(0, 0, 1), end - start))
+    obj.MeasuredAs = json.dumps([*pipe.start, *pipe.end, pipe.outer_diameter])
     obj.ComponentId = pipe.id
     obj.StationName = pipe.station or ""
     obj.Pick = NO_PICK if pipe.pick is None else pipe.pick
@@ -117,12 +122,17 @@ def set_pipe(obj: Any, pipe: Pipe) -> None:
 
 
 def pipe_of(obj: Any) -> Pipe:
-    """Return a document object as a component, in the document's global frame."""
+    """Return a document object as a component, in the document's global frame.
+
+    Accuracy belongs to what was measured: a pipe that the user changed since is returned without it.
+    """
     placement = obj.getGlobalPlacement()
     start = placement.Base
     end = placement.multVec(FreeCAD.Vector(0, 0, obj.Length.Value))
     size = pipe_size(obj.OutsideDiameter.Value)
     sigma = tuple(obj.SigmaPosition)
+    now = (*start, *end, obj.OutsideDiameter.Value)
+    measured = bool(obj.MeasuredAs) and max(abs(a - b) for a, b in zip(now, json.loads(obj.MeasuredAs), strict=True)) < SAME_MM
     grades = {text: grade for grade, text in GRADES.items()}
     return Pipe(
         id=obj.ComponentId or obj.Name,
@@ -135,11 +145,11 @@ def pipe_of(obj: Any) -> Pipe:
         verified=grades.get(obj.StandardSources),  # type: ignore[arg-type]  # GRADES' keys
         pick=None if obj.Pick == NO_PICK else obj.Pick,
         station=obj.StationName or None,
-        quality=None if obj.Quality < 0 else obj.Quality,
-        sigma_position=sigma if any(sigma) else None,
-        sigma_direction_deg=obj.SigmaDirection.Value or None,
-        sigma_outer_diameter=obj.SigmaOutsideDiameter.Value or None,
-        loa=obj.LevelOfAccuracy or None,
+        quality=obj.Quality if measured and obj.Quality >= 0 else None,
+        sigma_position=sigma if measured and any(sigma) else None,
+        sigma_direction_deg=(obj.SigmaDirection.Value or None) if measured else None,
+        sigma_outer_diameter=(obj.SigmaOutsideDiameter.Value or None) if measured else None,
+        loa=(obj.LevelOfAccuracy or None) if measured else None,
         approximate=obj.Approximate,
         fixed=obj.Fixed,
         extra=json.loads(obj.Extra) if obj.Extra else {},

@@ -68,8 +68,12 @@ class Interior(ABC):
 class PhotogrammetricInterior(Interior):
     """Principal distance, principal point (mm), radial (A), decentring (B), scale and shear (C) terms.
 
-    The model of the paper's Sect. 3 as DESIGN.md spells it out, with y down; ``r0`` is the radius
-    in mm at which the radial distortion vanishes.
+    With image coordinates in mm, y down: x = (u - (width - 1) / 2) * pitch - x0, y alike, r2 = x x + y y;
+    radial = A1 (r2 - r0 r0) + A2 (r2 r2 - r0^4);
+    dx = x radial + B1 (r2 + 2 x x) + 2 B2 x y + C1 x + C2 y,
+    dy = y radial + B2 (r2 + 2 y y) + 2 B1 x y;
+    the ideal coordinates are ((x - dx) / c, (y - dy) / c). ``r0`` is the radius in mm at which the radial
+    distortion vanishes; the parameters are those of the paper's Sect. 3.
     """
 
     pixel_pitch: float

@@ -14,14 +14,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeworkbench.catalogue import PipeSize, pipe_size, pipe_sizes
+from pipeworkbench.catalogue import PipeSize, pipe_size
 from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinder, outlines
 from pipeworkbench.recon.extent import extent_of
 from pipeworkbench.recon.match import match, quality
 from pipeworkbench.recon.picks import PipePick
-from pipeworkbench.recon.search import PickSettings, clicked_extents, find_cylinders, scores_of
+from pipeworkbench.recon.search import PickSettings, clicked_extents, find_cylinders, scores_of, sizes_in
 from pipeworkbench.recon.tangents import PipeTangents, tangents_of
 from pipeworkbench.recon.views import View
 
@@ -29,6 +29,8 @@ COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to c
 FINAL = AdjustSettings(ranges=(3.0, 2.0))  # what is settled must not wander off to a neighbour
 HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
 SERIES_MISFIT = 0.25  # tolerances: sizes of series 1 are far more common, another must fit that much better
+LEAST_SEEN = 0.35  # part of all samples that must find an edge, else the pipe is approximate
+WORST_QUALITY = 0.75  # of the quality's search range; near it most edges are missing or others'
 LEAST_SUPPORT = 0.5  # of the clicked part's: a pipe whose extension finds fewer edges was followed too far
 
 
@@ -106,7 +108,7 @@ def _size_of(pick: PipePick, diameter: float, sigma: float, settings: PickSettin
     if pick.diameter is not None:
         return pipe_size(pick.diameter), True
     tolerance = np.hypot(max(settings.tolerance * diameter, settings.least_tolerance), 2 * sigma)
-    best = min(pipe_sizes(), key=lambda size: abs(size.outer_diameter - diameter) / tolerance + SERIES_MISFIT * (size.series - 1))
+    best = min(sizes_in(settings), key=lambda size: abs(size.outer_diameter - diameter) / tolerance + SERIES_MISFIT * (size.series - 1))
     return best, bool(abs(best.outer_diameter - diameter) <= tolerance)
 
 
@@ -121,9 +123,10 @@ def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, 
     if longer is not None and longer.support >= LEAST_SUPPORT * solution.support:
         solution = longer
         extent = extent_of(views, longer.cylinder, (-longer.half_length, longer.half_length), settings.extent)
+    poor = candidate.approximate or solution.support < LEAST_SEEN
     measured = candidate if held else replace(candidate, diameter=2 * solution.cylinder.radius, sigma_diameter=2 * solution.sigma_radius)
     q = _final_quality(views, solution.cylinder, extent, settings)
-    return replace(measured, solution=solution, extent=extent, quality=q)
+    return replace(measured, solution=solution, extent=extent, quality=q, approximate=poor or q > WORST_QUALITY * settings.final_range)
 
 
 def _final_quality(views: Sequence[View], cylinder: Cylinder, extent: tuple[float, float], settings: PickSettings) -> float:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -17,8 +16,6 @@ from pipeworkbench.recon.pipes import PipeCandidate, from_pick
 from pipeworkbench.recon.search import PickSettings
 from pipeworkbench.recon.station import Station
 from pipeworkbench.recon.views import View, views_of
-
-log = logging.getLogger(__name__)
 
 # Level of Accuracy of the U.S. Institute of Building Documentation: upper limits in mm at 95 %
 LEVELS_OF_ACCURACY = ((1.0, "LOA50"), (5.0, "LOA40"), (15.0, "LOA30"), (50.0, "LOA20"))

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pipeworkbench.catalogue import pipe_sizes
+from pipeworkbench.catalogue import PipeSize, pipe_sizes
 from pipeworkbench.recon.appearance import likeness
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinder, Cylinders, outlines
@@ -81,6 +81,12 @@ def find_cylinders(views: Sequence[View], pick: PipePick, tangents: PipeTangents
     return _best_distinct(views, pick, tangents, settled, settings)
 
 
+def sizes_in(settings: PickSettings) -> tuple[PipeSize, ...]:
+    """Return the standard sizes within the diameter range."""
+    low, high = settings.diameter_range
+    return tuple(size for size in pipe_sizes() if low <= size.outer_diameter <= high)
+
+
 def scores_of(
     views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinders: Cylinders, extents: Array, diameters: Array, settings: PickSettings
 ) -> Array:
@@ -96,7 +102,7 @@ def scores_of(
     scores = np.where(known.any(axis=0), edges + settings.likeness_weight * alike, -np.inf)
     if pick.diameter == "free":
         return scores
-    sizes = pipe_sizes() if pick.diameter is None else ()
+    sizes = sizes_in(settings) if pick.diameter is None else ()
     standard = np.array([size.outer_diameter for size in sizes] if sizes else [pick.diameter], float)
     rarity = np.array([size.series - 1 for size in sizes] or [0], float)
     width_px = 2 * tangents.half_width * views[pick.camera].camera.interior.pixels_per_radian
@@ -133,7 +139,7 @@ def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, s
     keep = (2 * radii >= settings.diameter_range[0]) & (2 * radii <= settings.diameter_range[1])
     tolerance = 4 * width_error + settings.tolerance
     if pick.diameter is None:
-        standard = np.array([size.outer_diameter for size in pipe_sizes()])
+        standard = np.array([size.outer_diameter for size in sizes_in(settings)])
         keep &= (np.abs(2 * radii[:, None] / standard - 1) < tolerance).any(axis=1)
     elif pick.diameter != "free":
         keep &= np.abs(2 * radii / pick.diameter - 1) < tolerance

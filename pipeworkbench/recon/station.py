@@ -27,8 +27,14 @@ SCHEMA = "pipeworkbench-station/1"
 ORTHONORMAL_TOLERANCE = 1e-5  # largest entry of R R^T - I; files with six decimals stay below it
 DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)  # what OpenCV's functions take
 
+MOST_PIXELS = 100_000  # along one side of an image
+LARGEST_RIG = 1e6  # mm from the first camera to another
+SMALLEST_FIELD_DEG, LARGEST_FIELD_DEG = 1.0, 170.0  # angle of view across the diagonal
+ROUND_TRIP_PX = 0.01  # what a pixel may be off after the way to its ray and back
+
 Finite = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Positive = Annotated[Finite, Field(gt=0)]
+Near = Annotated[Finite, Field(ge=-LARGEST_RIG, le=LARGEST_RIG)]
 Row = tuple[Finite, Finite, Finite]
 RotationMatrix = tuple[Row, Row, Row]
 
@@ -81,7 +87,7 @@ def _orthonormal(value: RotationMatrix) -> RotationMatrix:
 
 class _Exterior(BaseModel):
     rotation_rig_to_camera: RotationMatrix
-    projection_centre: Row
+    projection_centre: tuple[Near, Near, Near]
 
     _check = field_validator("rotation_rig_to_camera")(_orthonormal)
 
@@ -89,8 +95,8 @@ class _Exterior(BaseModel):
 class _Camera(BaseModel):
     name: Annotated[str, Field(min_length=1)]
     image: Annotated[str, Field(min_length=1)]
-    width: Annotated[int, Field(ge=16, strict=True)]
-    height: Annotated[int, Field(ge=16, strict=True)]
+    width: Annotated[int, Field(ge=16, le=MOST_PIXELS, strict=True)]
+    height: Annotated[int, Field(ge=16, le=MOST_PIXELS, strict=True)]
     interior: Annotated[_Photogrammetric | _OpenCV, Field(discriminator="model")]
     exterior: _Exterior
 
@@ -131,6 +137,8 @@ def read_station(path: Path) -> Station:
     data = read_json(source)
     if not isinstance(data, dict):
         raise InputError(source, "", "is not a JSON object", f"give a file of schema {SCHEMA}")
+    if data.get("schema") != SCHEMA:
+        raise InputError(source, "schema", f"is {data.get('schema')!r}", f"give a file of schema {SCHEMA}")
     _look_at_keys(data, source)
     station = check(TypeAdapter(_Station), data, source)
     names = [camera.name for camera in station.cameras]
@@ -146,11 +154,18 @@ def read_station(path: Path) -> Station:
         )
         for camera in station.cameras
     )
+    for index, camera in enumerate(cameras):
+        _refuse_impossible_lens(camera.interior, f"cameras[{index}].interior", source)
     _refuse_single_viewpoint(cameras, source)
     images = tuple(source.parent / camera.image for camera in station.cameras)
+    seen: dict[Path, int] = {}
     for index, image in enumerate(images):
-        if not image.is_file():
-            raise InputError(source, f"cameras[{index}].image", f"there is no file {image}", "put the image there or correct the name")
+        key = f"cameras[{index}].image"
+        if not _is_file(image):
+            raise InputError(source, key, f"there is no file {image}", "put the image there or correct the name")
+        earlier = seen.setdefault(image.resolve(), index)
+        if earlier != index:
+            raise InputError(source, key, f"is the image of cameras[{earlier}] as well", "give each camera its own photograph")
     return Station(station.name, cameras, images, source)
 
 
@@ -189,6 +204,31 @@ def read_image(station: Station, index: int) -> NDArray[np.uint8] | NDArray[np.u
 def _rotation(matrix: RotationMatrix) -> Array:
     """Return the nearest exact rotation matrix (3, 3): files are rounded."""
     return np.asarray(Rotation.from_matrix(matrix).as_matrix())
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name that no file system takes
+        return False
+
+
+def _refuse_impossible_lens(interior: Interior, key: str, source: Path) -> None:
+    """Refuse an interior orientation that does not map its own image to rays and back."""
+    u, v = np.meshgrid(np.linspace(0, interior.width - 1, 13), np.linspace(0, interior.height - 1, 9))
+    pixels = np.column_stack([u.ravel(), v.ravel()])
+    with np.errstate(all="ignore"):
+        ideal = interior.ideal(pixels)
+        back = interior.pixels(ideal) if np.isfinite(ideal).all() else np.full_like(pixels, np.nan)
+        turned = np.linalg.det(interior.pixel_derivative(ideal, pixels)) if np.isfinite(back).all() else np.zeros(1)
+        corners = np.column_stack([ideal[[0, -1]], np.ones(2)])
+        corners /= np.linalg.norm(corners, axis=1, keepdims=True)
+        field = float(np.degrees(np.arccos(np.clip(corners[0] @ corners[1], -1, 1))))
+    remedy = "check the calibration and its units (principal distance and pixel pitch in mm, focal lengths in pixels)"
+    if not (np.abs(back - pixels).max() <= ROUND_TRIP_PX and (turned > 0).all()):
+        raise InputError(source, key, "the distortion folds the image over: pixels and rays do not belong together one to one", remedy)
+    if not SMALLEST_FIELD_DEG <= field <= LARGEST_FIELD_DEG:
+        raise InputError(source, key, f"the angle of view is {field:.3g} deg across the diagonal", remedy)
 
 
 def _refuse_single_viewpoint(cameras: tuple[Camera, ...], source: Path) -> None:

@@ -149,3 +149,24 @@ def test_object_of_an_older_version_gets_what_it_lacks(document, tmp_path):
     obj.removeProperty("Fixed")
     obj.Proxy.onDocumentRestored(obj)
     assert obj.Fixed is False
+
+
+def test_pipe_that_the_user_changed_is_not_exported_as_measured(document):
+    obj = add_pipe(document, DN40)
+    obj.Length = 700
+    changed = pipe_of(obj)
+    assert changed.length == pytest.approx(700)
+    assert (changed.quality, changed.sigma_position, changed.loa) == (None, None, None)
+
+
+def test_typed_standard_diameter_brings_its_wall(document):
+    obj = add_pipe(document, DN40)
+    obj.OutsideDiameter = 114.3
+    assert obj.WallThickness.Value == pytest.approx(3.6)
+
+
+def test_pipes_of_unmerged_stations_are_not_mixed(document):
+    add_pipe(document, DN40)
+    add_pipe(document, Pipe(**{**vars(DN40), "id": "B-P00", "station": "B"}))
+    with pytest.raises(PipeWorkbenchError, match="several stations"):
+        pipeline_of(document)
