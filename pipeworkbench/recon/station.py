@@ -30,6 +30,7 @@ DISTORTION_LENGTHS = (0, 4, 5, 8, 12, 14)  # what OpenCV's functions take
 MOST_PIXELS = 100_000  # along one side of an image
 LARGEST_RIG = 1e6  # mm from the first camera to another
 SMALLEST_FIELD_DEG, LARGEST_FIELD_DEG = 1.0, 170.0  # angle of view across the diagonal
+LARGEST_STRETCH = 100.0  # of an area in the image by the distortion, between any two places
 ROUND_TRIP_PX = 0.01  # what a pixel may be off after the way to its ray and back
 
 Finite = Annotated[float, Field(allow_inf_nan=False, strict=True)]
@@ -225,8 +226,8 @@ def _refuse_impossible_lens(interior: Interior, key: str, source: Path) -> None:
         corners /= np.linalg.norm(corners, axis=1, keepdims=True)
         field = float(np.degrees(np.arccos(np.clip(corners[0] @ corners[1], -1, 1))))
     remedy = "check the calibration and its units (principal distance and pixel pitch in mm, focal lengths in pixels)"
-    if not (np.abs(back - pixels).max() <= ROUND_TRIP_PX and (turned > 0).all()):
-        raise InputError(source, key, "the distortion folds the image over: pixels and rays do not belong together one to one", remedy)
+    if not (np.abs(back - pixels).max() <= ROUND_TRIP_PX and (turned > 0).all() and turned.max() < LARGEST_STRETCH * turned.min()):
+        raise InputError(source, key, "the distortion folds or tears the image: pixels and rays do not belong together one to one", remedy)
     if not SMALLEST_FIELD_DEG <= field <= LARGEST_FIELD_DEG:
         raise InputError(source, key, f"the angle of view is {field:.3g} deg across the diagonal", remedy)
 
