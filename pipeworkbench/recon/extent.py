@@ -17,14 +17,16 @@ from pipeworkbench.recon.views import View
 
 @dataclass(frozen=True)
 class ExtentSettings:
-    """Tunables; ``reach`` in px is how near an edge must be, lengths are in outside diameters.
+    """Tunables; ``reach`` in px is how near an edge must be, lengths are in outside diameters or in mm.
 
-    A gap longer than ``bridge`` ends the pipe (a bracket is bridged, a flange is not); ``window`` is
-    the stretch over which the evidence must hold on both sides in ``evidence`` of its samples.
+    A gap longer than ``bridge`` or ``bridge_mm`` ends the pipe, so that a bracket is bridged and a pair
+    of weld-neck flanges is not (brackets do not grow with the pipe as flanges do); ``window`` is the
+    stretch over which the evidence must hold on both sides in ``evidence`` of its samples.
     """
 
     reach: float = 1.5
     bridge: float = 1.05
+    bridge_mm: float = 70.0
     window: float = 0.3
     evidence: float = 0.6
     sample: float = 0.04
@@ -52,7 +54,7 @@ def extent_of(views: Sequence[View], cylinder: Cylinder, known: tuple[float, flo
         seen |= _both_edges_seen(view, cylinder, along, window, settings)
     seen |= (along >= known[0]) & (along <= known[1])
     inside = int(np.argmin(np.abs(along - (known[0] + known[1]) / 2)))
-    gap = round(settings.bridge / settings.sample)
+    gap = round(min(settings.bridge * diameter, settings.bridge_mm) / step)
     first = along[inside - _end_of_run(seen[: inside + 1][::-1], gap)]
     last = along[inside + _end_of_run(seen[inside:], gap)]
     return min(float(first), known[0]), max(float(last), known[1])
