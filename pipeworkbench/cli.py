@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pipeworkbench.recon.reconstruct import Reconstruction
 
 SMALLEST_MM, LARGEST_MM, NEAREST_MM = 1.0, 200_000.0, 200.0  # of ranges that make sense
-DONE, DEFECT, BAD_INPUT = 0, 1, 2
+DONE, BAD_INPUT = 0, 2  # 1 is what Python exits with after an exception nobody expected
 
 
 class _Parser(argparse.ArgumentParser):

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinders, outlines
+from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
 from pipeworkbench.recon.views import View
 
 ALONG, ACROSS = 12, 15  # samples; the median along the pipe leaves brackets and stains out
@@ -30,7 +30,7 @@ def shading(view: View, cylinders: Cylinders, extents: Array) -> Array:
     """
     import cv2
 
-    along = extents[:, :1] + (extents[:, 1:] - extents[:, :1]) * np.linspace(0.05, 0.95, ALONG)
+    along = spread(extents, np.linspace(0.05, 0.95, ALONG))
     sides, _ = outlines(view.camera, cylinders, along)
     weight = np.linspace(MARGIN, 1 - MARGIN, ACROSS)[:, None]
     where = sides[:, 0, :, None, :] * (1 - weight) + sides[:, 1, :, None, :] * weight

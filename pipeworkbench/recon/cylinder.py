@@ -77,6 +77,11 @@ def perpendicular_axes(directions: Array) -> tuple[Array, Array]:
     return first, np.cross(directions, first)
 
 
+def spread(extents: Array, fractions: Array) -> Array:
+    """Return positions (k, n) at fractions (n,) of the way along extents (k, 2)."""
+    return extents[:, :1] + (extents[:, 1:] - extents[:, :1]) * fractions
+
+
 def edge_lines(cylinders: Cylinders, projection_centre: Array) -> tuple[Array, Array]:
     """Return the lines on cylinders along which a camera sees their edges.
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinders, outlines
+from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.views import View
 
@@ -60,7 +60,7 @@ def evidence(
         NaN where the cylinder is not in the image.
     """
     settings = settings or EvidenceSettings()
-    along = extents[:, :1] + (extents[:, 1:] - extents[:, :1]) * np.linspace(0, 1, settings.samples)
+    along = spread(extents, np.linspace(0, 1, settings.samples))
     return np.array([_in_view(view, cylinders, along, polarity, settings) for view in views])
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from pipeworkbench.catalogue import PipeSize, pipe_sizes
 from pipeworkbench.recon.appearance import likeness
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinder, Cylinders, outlines
+from pipeworkbench.recon.cylinder import Cylinder, Cylinders, outlines, spread
 from pipeworkbench.recon.evidence import EvidenceSettings, evidence
 from pipeworkbench.recon.extent import ExtentSettings
 from pipeworkbench.recon.match import match
@@ -45,7 +45,8 @@ class PickSettings:
     The score is the evidence of the edges, plus ``likeness_weight`` times that of the shading, less
     ``misfit_penalty`` for a diameter off the standard's (in units of ``diameter_scatter`` and of what
     the width leaves open) and ``series_penalty`` per series of EN 10220 above the first. Below
-    ``hopeless_score`` there is no pipe; below ``least_score``, or with a diameter off by more than ``tolerance``, a pipe is marked approximate.
+    ``hopeless_score`` there is no pipe; below ``least_score``, or with a diameter off by more than
+    ``tolerance``, a pipe is marked approximate.
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
@@ -123,9 +124,9 @@ def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, s
     shift = scale * base  # px of parallax per unit of inverse depth
     inverse_depth = np.linspace(1 / far, 1 / near, max(2, int(np.ceil((1 / near - 1 / far) * shift / settings.step))))
 
-    spread = 4 * tangents.sigma_px / scale / (2 * tangents.half_length * tangents.half_width)
+    slope_spread = 4 * tangents.sigma_px / scale / (2 * tangents.half_length * tangents.half_width)
     steepest = np.tan(np.radians(settings.largest_tilt_deg))
-    low, high = max(tangents.slope - spread, -steepest), min(tangents.slope + spread, steepest)
+    low, high = max(tangents.slope - slope_spread, -steepest), min(tangents.slope + slope_spread, steepest)
     if low >= high:
         low, high = -steepest, steepest
     slope_step = settings.step / max(shift * tangents.half_length / near, 1.0)
@@ -153,8 +154,7 @@ def _hypotheses(views: Sequence[View], pick: PipePick, tangents: PipeTangents, s
 def _rank(views: Sequence[View], pick: PipePick, tangents: PipeTangents, hypotheses: Cylinders, settings: PickSettings) -> Cylinders:
     """Return the hypotheses that fit the other images best by Eq. 4, at most ``ranked``, none beside a better one."""
     origin = views[pick.camera].camera.projection_centre
-    ends = clicked_extents(hypotheses, origin, tangents)
-    along = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * np.linspace(0, 1, settings.samples)
+    along = spread(clicked_extents(hypotheses, origin, tangents), np.linspace(0, 1, settings.samples))
     others = [view for number, view in enumerate(views) if number != pick.camera]
     polarity = np.rint(tangents.polarity_of(hypotheses, origin, settings.samples))
     squares = np.array([_quality_in(view, hypotheses, along, polarity, settings) ** 2 for view in others])
