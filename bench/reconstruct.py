@@ -18,9 +18,10 @@ import cv2
 
 from pipeworkbench.exports.writers import Result, write
 from pipeworkbench.recon.edges import detect_edges
+from pipeworkbench.recon.images import read_image
 from pipeworkbench.recon.picks import read_picks
 from pipeworkbench.recon.reconstruct import reconstruct
-from pipeworkbench.recon.station import read_image, read_station
+from pipeworkbench.recon.station import read_station
 
 SAMPLE = Path(__file__).resolve().parent.parent / "resources" / "samples" / "dummy" / "A"
 REPEATS = 3

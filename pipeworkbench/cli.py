@@ -10,6 +10,7 @@ import argparse
 import io
 import json
 import logging
+import math
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -21,9 +22,13 @@ from pipeworkbench import __version__
 from pipeworkbench.errors import InputError, PipeWorkbenchError
 
 if TYPE_CHECKING:
+    from pipeworkbench.pipeline import Pipeline
     from pipeworkbench.recon.reconstruct import Reconstruction
 
 SMALLEST_MM, LARGEST_MM, NEAREST_MM = 1.0, 200_000.0, 200.0  # of ranges that make sense
+UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0}  # in mm
+COMMAND_LINE = "the command line"
+BASES_SHOWN = 5
 DONE, BAD_INPUT = 0, 2  # 1 is what Python exits with after an exception nobody expected
 
 
@@ -72,7 +77,31 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--quiet", action="store_true", help="no table, no progress, no warnings")
     command.add_argument("--json", action="store_true", help="print a machine-readable summary instead of the table")
     command.set_defaults(run=_reconstruct)
+    _add_convert(commands)
     return parser
+
+
+def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
+    command = commands.add_parser(
+        "convert",
+        help="a rig of another program to station.json; a pipeline to other formats",
+        description="Writes the station.json of a rig from OpenCV, COLMAP, Metashape or Kalibr, or a pipeline in the formats of the "
+        "outputs' endings.",
+        epilog="Photographs whose names the input gives are looked up beside it and in folders 'images' around it.",
+    )
+    command.add_argument("input", metavar="INPUT", type=Path, help="calibration file, folder of a COLMAP model, or pipeline JSON")
+    command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output; may be repeated for a pipeline")
+    command.add_argument("--format", choices=["opencv", "colmap", "metashape", "kalibr"], help="default: recognised by the content")
+    command.add_argument("--images", metavar="FILE", type=Path, nargs="+", help="the photographs, one per camera in the cameras' order")
+    command.add_argument("--image-folder", metavar="DIR", type=Path, help="where the photographs lie that the input names")
+    length = command.add_mutually_exclusive_group()
+    length.add_argument("--unit", choices=list(UNITS), help="the input's unit of length, where the format does not define it")
+    length.add_argument("--scale", metavar="FACTOR", type=float, help="millimetres per unit of the input")
+    command.add_argument("--up", metavar=("X", "Y", "Z"), nargs=3, type=float, help="upward vertical in the input's world")
+    command.add_argument("--cameras", metavar="NAME", nargs="+", help="cameras to take, in this order; the first is the reference")
+    command.add_argument("--name", help="name of the station; default: that of its folder")
+    command.add_argument("--quiet", action="store_true", help="no output, no warnings")
+    command.set_defaults(run=_convert)
 
 
 def _reconstruct(options: argparse.Namespace) -> int:
@@ -119,6 +148,63 @@ def _reconstruct(options: argparse.Namespace) -> int:
         print(json.dumps(_summary(found, options.out, seconds)))
     elif show:
         _print_table(found, options.out, seconds)
+    return DONE
+
+
+def _convert(options: argparse.Namespace) -> int:
+    from pipeworkbench.exports.writers import check_paths
+    from pipeworkbench.recon.formats.conversion import convert_rig
+    from pipeworkbench.recon.formats.recognition import read_rig
+
+    pipeline = _read_pipeline(options.input) if options.format is None else None
+    if pipeline is not None:
+        return _convert_pipeline(pipeline, options)
+    if len(options.out) > 1:
+        raise InputError(COMMAND_LINE, "--out", "a rig becomes one station", "name one output")
+    (output,) = options.out
+    if output.suffix.lower() != ".json":
+        raise InputError(output, "", "a rig becomes a station file", "name an output that ends in .json")
+    given = tuple(options.images or ())
+    check_paths(options.out, inputs=(options.input, *given))
+    rig = read_rig(options.input, options.format, options.cameras)
+    check_paths(options.out, inputs=(*rig.files, *given))
+    scale = UNITS[options.unit] if options.unit is not None else options.scale
+    station = convert_rig(rig, output, images=options.images, image_folder=options.image_folder, scale=scale, up=options.up, name=options.name)
+    if not options.quiet:
+        first, *others = (camera.projection_centre for camera in station.cameras)
+        distances = ", ".join(f"{math.dist(first, other):.1f}" for other in others[:BASES_SHOWN]) + (" ..." if len(others) > BASES_SHOWN else "")
+        print(f"written: {output}: {len(station.cameras)} cameras ({rig.format}), {distances} mm from the first")
+    return DONE
+
+
+def _read_pipeline(path: Path) -> Pipeline | None:
+    """Return the pipeline a file holds, None where it is something else."""
+    from pipeworkbench.files import read_json
+    from pipeworkbench.pipeline import SCHEMA, Pipeline
+
+    if path.suffix.lower() != ".json" or not path.is_file():
+        return None
+    data = read_json(path)
+    schema = data.get("schema") if isinstance(data, dict) else None
+    if schema == SCHEMA:
+        return Pipeline.from_dict(data, source=path)
+    if isinstance(schema, str) and schema.startswith("pipeworkbench-"):
+        raise InputError(path, "schema", f"is {schema!r}", f"give a rig of another program or a pipeline ({SCHEMA})")
+    return None
+
+
+def _convert_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> int:
+    from pipeworkbench.exports.writers import Result, check_paths, write
+
+    unused = ("images", "image_folder", "unit", "scale", "up", "cameras", "name")
+    for name in unused:
+        if getattr(options, name) is not None:
+            raise InputError(COMMAND_LINE, f"--{name.replace('_', '-')}", f"is for rigs, {options.input} is a pipeline", "leave it out")
+    check_paths(options.out, has_photographs=False, inputs=(options.input,))
+    for path in options.out:
+        write(Result(pipeline), path)
+        if not options.quiet:
+            print(f"written: {path}")
     return DONE
 
 

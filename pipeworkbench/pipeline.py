@@ -94,7 +94,11 @@ class Elbow(Component):
 
 @dataclass(frozen=True, kw_only=True)
 class Flange(Component):
-    """A flange; ``axis`` points out of the sealing face, whose centre is ``face`` (mm)."""
+    """A flange; ``axis`` points out of the sealing face, whose centre is ``face`` (mm).
+
+    ``D`` and ``C`` are the plate's diameter and thickness, ``length`` reaches from the face to the weld end;
+    ``neck_diameter`` is the neck's where it leaves the plate, the pipe's where it is not known.
+    """
 
     kind: ClassVar[str] = "flange"
 
@@ -105,6 +109,7 @@ class Flange(Component):
     D: Positive
     C: Positive
     length: Positive
+    neck_diameter: Positive | None = None
     equivalents: tuple[dict[str, Any], ...] = ()
 
 

@@ -15,7 +15,8 @@ from pipeworkbench.files import written_whole
 from pipeworkbench.pipeline import Pipe, Pipeline
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.cylinder import Cylinder, contour
-from pipeworkbench.recon.station import Station, read_image
+from pipeworkbench.recon.images import read_image
+from pipeworkbench.recon.station import Station
 
 PICTURE_WIDTH = 1296  # px of each photograph in the picture
 SAMPLES = 200  # along a pipe; its edges are curves where the lens distorts

@@ -7,18 +7,19 @@ module needs to know about rigs and inclination sensors.
 
 from __future__ import annotations
 
+import json
 import logging
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, Field, TypeAdapter, field_validator
 from scipy.spatial.transform import Rotation
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.files import check, read_json, warn_of_unknown_keys
+from pipeworkbench.files import check, read_json, warn_of_unknown_keys, written_whole
 from pipeworkbench.recon.camera import Array, Camera, Interior, OpenCVInterior, PhotogrammetricInterior
 
 log = logging.getLogger(__name__)
@@ -170,36 +171,67 @@ def read_station(path: Path) -> Station:
     return Station(station.name, cameras, images, source)
 
 
-def read_image(station: Station, index: int) -> NDArray[np.uint8] | NDArray[np.uint16]:
-    """Read a camera's image as grey values (height, width), 8 or 16 bit.
+def write_station(station: Station, path: Path) -> None:
+    """Write a station as the file that `read_station` takes, whole or not at all.
+
+    The rig's axes are the first camera's; the origin stays where it is. Images are named relative to the file.
 
     Raises
     ------
     InputError
-        Where the file is not an image or its size is not the calibration's.
+        Where the file cannot be written or would be refused on reading; then nothing is left behind.
     """
-    import cv2
+    level_from_rig = station.cameras[0].rotation.T
+    data = {
+        "schema": SCHEMA,
+        "name": station.name,
+        "length_unit": "mm",
+        "level_from_rig": level_from_rig.tolist(),
+        "cameras": [
+            {
+                "name": camera.name,
+                "image": _relative(image, path),
+                "width": camera.interior.width,
+                "height": camera.interior.height,
+                "interior": _interior_as_dict(camera.interior),
+                "exterior": {
+                    "rotation_rig_to_camera": (camera.rotation @ level_from_rig).tolist(),
+                    "projection_centre": (level_from_rig.T @ camera.projection_centre).tolist(),
+                },
+            }
+            for camera, image in zip(station.cameras, station.images, strict=True)
+        ],
+    }
+    with written_whole(path) as temporary:
+        temporary.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+        try:
+            read_station(temporary)
+        except InputError as error:
+            if error.source != str(temporary):
+                raise
+            raise InputError(path, error.key, error.problem, error.remedy) from None
 
-    path, interior = station.images[index], station.cameras[index].interior
-    key = f"cameras[{index}].image"
+
+def _relative(image: Path, station_file: Path) -> str:
+    """Return an image's path relative to the station's file, with forward slashes."""
+    # folders are resolved, so that the way up through a link leads where the system goes; the image may be a link itself
+    folder, here = image.absolute().parent.resolve(), station_file.absolute().parent.resolve()
     try:
-        data = np.fromfile(path, np.uint8)
-    except OSError as error:
-        raise InputError(path, "", f"cannot be read ({error.strerror})", "check the permissions") from None
-    # the calibration belongs to the sensor's pixels as stored: a rotation flag must not turn them
-    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_ANYDEPTH | cv2.IMREAD_IGNORE_ORIENTATION
-    grey: Any = cv2.imdecode(data, flags) if data.size else None
-    if grey is None or grey.dtype not in (np.uint8, np.uint16):
-        raise InputError(station.source, key, f"{path} is not an 8- or 16-bit image", "give a PNG, JPEG or TIFF")
-    height, width = grey.shape
-    if (width, height) != (interior.width, interior.height):
-        raise InputError(
-            station.source,
-            key,
-            f"{path} is {width} x {height} pixels, the calibration is for {interior.width} x {interior.height}",
-            "give the original image or the calibration of this size",
-        )
-    return grey
+        return Path(os.path.relpath(folder / image.name, here)).as_posix()
+    except ValueError:  # another drive of Windows
+        raise InputError(image, "", f"is on another drive than {station_file}", "put both on one drive") from None
+
+
+def _interior_as_dict(interior: Interior) -> dict[str, Any]:
+    """Return an interior orientation as the file's structure."""
+    model: type[BaseModel]
+    if isinstance(interior, OpenCVInterior):
+        name, model = "opencv", _OpenCV
+    elif isinstance(interior, PhotogrammetricInterior):
+        name, model = "photogrammetric", _Photogrammetric
+    else:
+        raise TypeError(f"no file format for {type(interior).__name__}")
+    return {"model": name} | {key: getattr(interior, key) for key in model.model_fields if key != "model"}
 
 
 def _rotation(matrix: RotationMatrix) -> Array:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Camera
 from pipeworkbench.recon.edges import EdgeMap, EdgeSettings, detect_edges
-from pipeworkbench.recon.station import Station, read_image
+from pipeworkbench.recon.images import read_image
+from pipeworkbench.recon.station import Station
 
 SHADING_SIGMA_PX = 1.5  # smoothing of the image where only its shading matters
 

@@ -9,7 +9,7 @@ from test_edges import SIZE as SIZE_OF_STEP
 from test_edges import step_image
 
 from pipeworkbench.recon.edges import EdgeMap, detect_edges
-from pipeworkbench.recon.match import match, quality
+from pipeworkbench.recon.match import match, quality, robust_quality
 
 SIZE = 100
 
@@ -33,7 +33,8 @@ def edge_map(*lines):
     position = np.array([p for _, p, _ in found.values()]).reshape(-1, 2)
     normals = np.array([n for _, _, n in found.values()]).reshape(-1, 2)
     ones = np.ones(len(position))
-    return EdgeMap(position, normals, 10 * ones, 0.1 * ones, index)
+    pixel = np.array([(u, v) for v, u in found], np.int32).reshape(-1, 2)
+    return EdgeMap(position, normals, 10 * ones, 30 * ones, 0.8 * ones, 0.1 * ones, ones, pixel, index)
 
 
 def at(u, v, direction_deg, count=1):
@@ -144,3 +145,43 @@ def test_quality_is_taken_along_the_axis_that_is_asked_for():
     values = np.array([[3.0, 4.0, np.nan], [0.0, 0.0, 0.0]])
     assert quality(values, 5.0) == pytest.approx([np.sqrt(50 / 3), 0.0])
     assert quality(values, 5.0, axis=0) == pytest.approx(np.sqrt([4.5, 8.0, 12.5]))
+
+
+@given(st.lists(st.floats(-8, 8), min_size=1, max_size=40))
+def test_missing_edges_count_as_the_range_or_half_of_it(values):
+    distances = np.array([*values, np.nan, np.nan])
+    by_hand = np.sqrt((np.sum(np.square(values)) + 2 * 4.0**2) / (len(values) + 2))
+    assert quality(distances, 8.0, missing="half") == pytest.approx(by_hand)
+    assert quality(distances, 8.0) >= quality(distances, 8.0, missing="half")
+
+
+@given(st.lists(st.floats(-0.05, 0.05), min_size=5, max_size=40))
+def test_robust_quality_is_eq_4_where_all_fit(values):
+    distances = np.array(values)
+    assert robust_quality(distances, 8.0) == pytest.approx(quality(distances, 8.0), rel=3e-3, abs=1e-12)
+
+
+def test_clutter_beside_a_part_of_a_contour_spoils_the_plain_quality_only():
+    """A contour that fits but for a fifth of its samples must beat one that is off everywhere."""
+    right = np.concatenate([np.full(80, 0.1), np.full(20, 11.0)])
+    wrong = np.full(100, 2.0)
+    assert quality(right, 12.0) > quality(wrong, 12.0)
+    assert robust_quality(right, 12.0) < robust_quality(wrong, 12.0)
+
+
+@pytest.mark.parametrize(("largest_angle_deg", "found"), [(20, False), (46, True), (None, True)])
+def test_direction_gate_is_settable(largest_angle_deg, found):
+    gate = None if largest_angle_deg is None else np.radians(largest_angle_deg)
+    assert match(UPRIGHT, *at(42, 50, 45), 4.0, largest_angle=gate).found[0] == found
+
+
+def test_samples_in_many_chunks_are_matched_like_one_by_one():
+    random = np.random.default_rng(4)
+    edges = detect_edges(step_image(33, 0.2, 40, 200, noise=6))
+    angle = random.uniform(0, 2 * np.pi, 5000)
+    positions, normals = random.uniform(-10, SIZE_OF_STEP + 10, (5000, 2)), np.column_stack([np.cos(angle), np.sin(angle)])
+    together = match(edges, positions, normals, 7.0)
+    for row in random.integers(0, 5000, 60):
+        alone = match(edges, positions[row : row + 1], normals[row : row + 1], 7.0)
+        assert np.array_equal(alone.distance, together.distance[row : row + 1], equal_nan=True)
+        assert alone.edge[0] == together.edge[row]

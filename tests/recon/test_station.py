@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stations: frames, rounded files, and images as they are stored."""
+"""Stations: frames and rounded files."""
 
 import json
 
@@ -9,7 +9,7 @@ import pytest
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.recon.camera import OpenCVInterior
-from pipeworkbench.recon.station import read_image, read_station
+from pipeworkbench.recon.station import read_station
 
 WIDTH, HEIGHT = 64, 48
 
@@ -117,52 +117,3 @@ def test_models_are_kept_apart(tmp_path, sample):
     image = ramp(np.uint8, 0.05)
     assert isinstance(small_station(tmp_path, [image, image]).cameras[0].interior, OpenCVInterior)
     assert not isinstance(read_station(sample).cameras[0].interior, OpenCVInterior)
-
-
-# ---------------------------------------------------------------- images
-
-
-@pytest.mark.parametrize(("dtype", "factor"), [(np.uint8, 0.08), (np.uint16, 21)])
-def test_grey_image_is_read_with_all_its_bits(tmp_path, dtype, factor):
-    image = ramp(dtype, factor)
-    read = read_image(small_station(tmp_path, [image, image]), 1)
-    assert read.dtype == dtype
-    assert np.array_equal(read, image)
-
-
-@pytest.mark.parametrize(("dtype", "tolerance"), [(np.uint8, 1.5), (np.uint16, 4)])
-def test_colour_image_is_read_as_its_luminance(tmp_path, dtype, tolerance):
-    top = np.iinfo(dtype).max
-    colour = np.random.default_rng(3).integers(0, top, (HEIGHT, WIDTH, 3), endpoint=True).astype(dtype)
-    read = read_image(small_station(tmp_path, [colour, colour]), 0)
-    luminance = colour.astype(float) @ [0.114, 0.587, 0.299]  # Rec. 601, blue first
-    assert read.dtype == dtype
-    assert read.shape == (HEIGHT, WIDTH)
-    assert np.abs(read - luminance).max() <= tolerance
-
-
-def test_image_of_another_size_is_refused_with_both_sizes(tmp_path):
-    image = ramp(np.uint8, 0.05)
-    with pytest.raises(InputError, match="48 x 64 pixels, the calibration is for 64 x 48") as error:
-        read_image(small_station(tmp_path, [image, image.T]), 1)
-    assert error.value.key == "cameras[1].image"
-
-
-@pytest.mark.parametrize("content", [b"", b"no image", b"\x89PNG\r\n\x1a\n"], ids=["empty", "text", "torn"])
-def test_file_that_is_no_image_is_refused(tmp_path, content):
-    image = ramp(np.uint8, 0.05)
-    station = small_station(tmp_path, [image, image])
-    station.images[0].write_bytes(content)
-    with pytest.raises(InputError) as error:
-        read_image(station, 0)
-    assert error.value.key == "cameras[0].image"
-
-
-def test_image_of_floating_point_numbers_is_refused(tmp_path):
-    image = ramp(np.uint8, 0.05)
-    station = small_station(tmp_path, [image, image])
-    good, data = cv2.imencode(".tiff", image.astype(np.float32))
-    assert good
-    station.images[0].write_bytes(data.tobytes())
-    with pytest.raises(InputError, match="8- or 16-bit"):
-        read_image(station, 0)
