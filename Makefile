@@ -29,7 +29,9 @@ lint: setup  ## ruff, mypy and the import rules
 install: setup  ## link the addon into FreeCAD's Mod folder
 	@bash scripts/install.sh
 
-bench: setup  ## time the steps on the bundled sample
+bench: setup  ## accuracy and time of the steps, beside peers where these are to be had
+	-$(python) -m pip install -q --disable-pip-version-check -c requirements/freecad-debian12.txt -e '.[bench]'
+	$(python) bench/measuring.py
 	$(python) bench/reconstruct.py
 
 docs: setup  ## write the reference of the reconstruction modules to build/docs

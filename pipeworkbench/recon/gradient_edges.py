@@ -28,7 +28,7 @@ from pipeworkbench.recon.edges import EdgePoints, EdgeSettings, Strip, kernel_re
 LOG_FLOOR = 0.02  # neighbours of a ridge count as at least this part of it, so that the logarithm exists
 TURN_PX = 4.0  # to each side along the edge where its direction is compared
 MOST_CURVED = 1 / 8.0  # 1/px; what turns faster is a corner, not an arc
-LARGEST_MOVE = 2.0  # standard deviations between the positions at both scales; more means a neighbouring edge
+LARGEST_MOVE = 2.5  # standard deviations between the positions at both scales; more means a neighbouring edge
 LEAST_MOVE = 0.08  # px; such a move never counts as one
 FURTHEST = 0.75  # px from the pixel where an edge was found to its place
 PIXEL_VARIANCE = 1 / 12  # px^2; a pixel is the mean over its area
