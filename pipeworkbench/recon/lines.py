@@ -131,6 +131,12 @@ def detect_lines(
     return fit_segments(edges, ends[length >= settings.least_length], interior, settings)
 
 
+def hough_segments(edges: EdgeMap, interior: Interior | None = None, settings: LineSettings | None = None) -> LineSegments:
+    """Find straight edges by the Hough transform, which needs no image but its edges; see :func:`detect_lines`."""
+    settings = settings or LineSettings()
+    return fit_segments(edges, _hough_transform(edges, settings), interior, settings)
+
+
 def fit_segments(edges: EdgeMap, ends: Array, interior: Interior | None = None, settings: LineSettings | None = None) -> LineSegments:
     """Fit lines to the edge points near segments (k, 2, 2), in measured pixels; doubles and those without support fall away."""
     settings = settings or LineSettings()

@@ -38,14 +38,23 @@ def settle(views: Sequence[View], cylinders: Cylinders, extents_of: Callable[[Cy
         extents = extents_of(cylinders)
         middle, half = extents.mean(axis=1), np.maximum(np.diff(extents, axis=1)[:, 0] / 2, 1.0)
         moved = Cylinders(cylinders.points + middle[:, None] * cylinders.directions, cylinders.directions, cylinders.radii)
-        step, axes, support = _steps(views, moved, half, reach)
-        directions = moved.directions + np.einsum("kp,kpi->ki", step[:, 2:4] / half[:, None], axes)
-        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        cylinders = Cylinders(moved.points + np.einsum("kp,kpi->ki", step[:, :2], axes), directions, moved.radii + step[:, 4])
+        cylinders, support = _moved(views, moved, half, reach)
         good = (cylinders.radii > 0) & np.isfinite(cylinders.points).all(axis=1)
         good &= support >= np.quantile(support, 1 - kept)
         cylinders = cylinders[good]
     return cylinders
+
+
+def drawn_onto_edges(views: Sequence[View], cylinders: Cylinders, half_lengths: Array, reach: float) -> Cylinders:
+    """Return all cylinders after one iteration with edges up to ``reach`` px away, ``half_lengths`` (k,) mm to both sides of their points."""
+    return _moved(views, cylinders, half_lengths, reach)[0]
+
+
+def _moved(views: Sequence[View], cylinders: Cylinders, half: Array, reach: float) -> tuple[Cylinders, Array]:
+    step, axes, support = _steps(views, cylinders, half, reach)
+    directions = cylinders.directions + np.einsum("kp,kpi->ki", step[:, 2:4] / half[:, None], axes)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    return Cylinders(cylinders.points + np.einsum("kp,kpi->ki", step[:, :2], axes), directions, cylinders.radii + step[:, 4]), support
 
 
 def _steps(views: Sequence[View], cylinders: Cylinders, half: Array, reach: float) -> tuple[Array, Array, Array]:

@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pipes without a pick: from the straight edges of all images to cylinders that explain them.
+
+The paper's brute force (Sect. 4.1) combines pairs of lines of one image with pairs of another, which grows with
+the fourth power of their number. Here one line of an image meets one of another (the second power),
+a third image confirms the line in space, and the list of standard diameters says where the pipe's second edge
+must be. What remains is ranked by how well the images agree about the surface and by the evidence of its
+edges, drawn onto them, and accepted greedily: a part of space belongs to one pipe.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeworkbench.catalogue import PipeSize, pipe_sizes
+from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
+from pipeworkbench.recon.edge_lines import EdgeLineSettings, match_lines
+from pipeworkbench.recon.evidence import EvidenceSettings, evidence
+from pipeworkbench.recon.lines import LineSettings, LineSegments, hough_segments
+from pipeworkbench.recon.picks import PipePick
+from pipeworkbench.recon.pipes import PipeCandidate, from_pick
+from pipeworkbench.recon.search import PickSettings
+from pipeworkbench.recon.second_edges import SecondEdgeSettings, cylinders_from_edges
+from pipeworkbench.recon.settle import drawn_onto_edges
+from pipeworkbench.recon.surface import Agreement, agreement, surface_agreement
+from pipeworkbench.recon.views import View
+
+TRUE_SHARE, TRUE_DECLINE = 0.95, 0.06  # correlations of right cylinders pile up below 1 like this
+FALSE_RANGE = 1.2  # those of wrong ones spread evenly over about so much
+SETTLING_PX = (3.0, 3.0, 2.0)  # search ranges of the steps onto the edges
+CELL_PX, CELL_MM, CELL_RADIUS = 6.0, 100.0, 0.04  # cylinders in one cell of direction, place and relative radius are alike
+NESTED = 0.8  # radii; of what lies further beside an accepted pipe, most is outside it
+PARALLEL = 0.97  # cosine
+PICK_SAMPLES = 25
+WORKERS = 2
+FURTHEST_SETTLED = 200.0  # mm; what is drawn further off was something else
+SCREENING = EvidenceSettings(samples=16, shifts=(-14.0, 14.0))  # for many hypotheses at a time
+
+
+@dataclass(frozen=True)
+class DetectSettings:
+    """Tunables; lengths in mm.
+
+    ``working_range`` and ``diameter_range`` limit the pipes. ``screened``, ``weighed`` and ``settled`` are how many
+    hypotheses go on to the next step at most; ``surface_weight`` is what the images' agreement about the surface
+    counts against the evidence of the edges. A pipe is accepted with at least ``least_evidence``, ``least_agreement`` of
+    its surface in every pair of images, at most ``most_beside`` of what is beside it, ``least_constancy`` along
+    the axis, ``slenderness`` and a diameter within ``tolerance`` of one of series 1 or ``rare_tolerance`` of another (parts).
+    """
+
+    working_range: tuple[float, float] = (2000.0, 12000.0)
+    diameter_range: tuple[float, float] = (15.0, 700.0)
+    segments: LineSettings = field(
+        default_factory=lambda: LineSettings(least_length=25.0, least_support=0.35, largest_gap=12.0, hough_votes=25, hough_gap=12.0)
+    )
+    lines: EdgeLineSettings = field(default_factory=lambda: EdgeLineSettings(least_length=25.0, least_witnesses=0.45, steepest_deg=85.0))
+    second_edges: SecondEdgeSettings = field(default_factory=SecondEdgeSettings)
+    screened: int = 6000
+    weighed: int = 2500
+    settled: int = 1000
+    surface_weight: float = 0.6
+    least_evidence: float = 0.9
+    least_agreement: float = 0.955
+    most_beside: float = 0.9
+    least_constancy: float = 0.15
+    slenderness: float = 1.3
+    tolerance: float = 0.012
+    rare_tolerance: float = 0.004
+
+
+@dataclass(frozen=True, eq=False)
+class Detected:
+    """Cylinders that are pipes, best first: extents (k, 2) mm along the axes, sizes and confidence (k,)."""
+
+    cylinders: Cylinders
+    extents: Array
+    sizes: tuple[PipeSize, ...]
+    confidence: Array
+
+
+def detect_cylinders(
+    views: Sequence[View],
+    settings: DetectSettings | None = None,
+    progress: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+) -> Detected:
+    """Find the pipes in a station's images.
+
+    Parameters
+    ----------
+    views : sequence of View
+    settings : DetectSettings, optional
+    progress : callable
+        Called with what is being done.
+    """
+    settings = settings or DetectSettings()
+    progress("finding lines")
+    with ThreadPoolExecutor(2) as threads:
+        segments = list(threads.map(lambda view: _segments_of(view, settings), views))
+    progress("matching lines")
+    lines = match_lines(views, segments, settings.lines)
+    common = [size for size in pipe_sizes() if size.series == 1 and settings.diameter_range[0] <= size.outer_diameter <= settings.diameter_range[1]]
+    diameters = np.array([size.outer_diameter for size in common])
+    progress("finding second edges")
+    cylinders, extents, second = cylinders_from_edges(views, lines, diameters, settings.second_edges)
+    progress("comparing surfaces")
+    surface = _log_ratio(surface_agreement(views, cylinders, extents, 10, 7))
+    best = _distinct(views, cylinders, extents, surface + 2 * second, settings.screened)
+    cylinders, extents, surface = cylinders[best], extents[best], surface[best]
+    best = np.argsort(-surface - 2 * second[best], kind="stable")[: settings.weighed]
+    cylinders, extents, surface = cylinders[best], extents[best], surface[best]
+    progress("weighing edges")
+    score = _mean_known(evidence(views, cylinders, extents, None, SCREENING)) + settings.surface_weight * surface
+    best = np.argsort(-score, kind="stable")[: settings.settled]
+    progress("drawing onto edges")
+    cylinders, extents = _settled(views, cylinders[best], extents[best])
+    return _accepted(views, cylinders, extents, settings)
+
+
+def detect(
+    views: Sequence[View],
+    settings: DetectSettings | None = None,
+    pick_settings: PickSettings | None = None,
+    progress: Callable[[str], None] = lambda text: None,  # noqa: ARG005
+) -> tuple[PipeCandidate, ...]:
+    """Find the pipes in a station's images and measure each as if its edges had been clicked.
+
+    Parameters
+    ----------
+    views : sequence of View
+    settings : DetectSettings, optional
+    pick_settings : PickSettings, optional
+        Of the measurement; the diameters and the working range are those of ``settings``.
+    progress : callable
+        Called with what is being done.
+
+    Returns
+    -------
+    tuple of PipeCandidate
+        No two in the same place; best first.
+    """
+    settings = settings or DetectSettings()
+    pick_settings = replace(pick_settings or PickSettings(), working_range=settings.working_range, diameter_range=settings.diameter_range)
+    found = detect_cylinders(views, settings, progress)
+    progress("measuring pipes")
+    picks = [pick for row in range(len(found.sizes)) if (pick := _as_pick(views, found, row)) is not None]
+    with ThreadPoolExecutor(WORKERS) as threads:
+        answers = list(threads.map(lambda pick: from_pick(views, pick, pick_settings), picks))
+    candidates = [answer[0] for answer in answers if answer and not answer[0].approximate]
+    if not candidates:
+        return ()
+    cylinders = Cylinders(
+        np.array([c.solution.cylinder.point for c in candidates]),
+        np.array([c.solution.cylinder.direction for c in candidates]),
+        np.array([c.solution.cylinder.radius for c in candidates]),
+    )
+    extents = np.array([c.extent for c in candidates])
+    chosen: list[int] = []
+    for row in range(len(candidates)):
+        if not _in_the_way(cylinders, extents, row, chosen):
+            chosen.append(row)
+    return tuple(candidates[row] for row in chosen)
+
+
+def _as_pick(views: Sequence[View], found: Detected, row: int) -> PipePick | None:
+    """Return a pick on the edges of a detected cylinder, in the image that shows most of it."""
+    which = np.array([row])
+    along = spread(found.extents[which], np.linspace(0.02, 0.98, PICK_SAMPLES))
+    outline = [outlines(view.camera, found.cylinders[which], along)[0][0] for view in views]
+    seen = [np.flatnonzero(np.isfinite(position).all(axis=(0, 2))) for position in outline]
+    camera = int(np.argmax([len(rows) for rows in seen]))
+    if len(seen[camera]) < 2:
+        return None
+    edges = outline[camera][:, [seen[camera][0], seen[camera][-1]]]
+    return PipePick(row, camera, edges, None)
+
+
+def _segments_of(view: View, settings: DetectSettings) -> LineSegments:
+    return hough_segments(view.edges, view.camera.interior, settings.segments)
+
+
+def _log_ratio(correlations: Array) -> Array:
+    """Return the mean log-likelihood ratio (k,) of correlations (pairs, k) for the same surface against another."""
+    alike = TRUE_SHARE * np.exp(-(1 - correlations) / TRUE_DECLINE) / TRUE_DECLINE + (1 - TRUE_SHARE)
+    return _mean_known(np.log(alike * FALSE_RANGE))
+
+
+def _mean_known(values: Array) -> Array:
+    """Return means (k,) of values (views or pairs, k) over those that are known; one alone counts half."""
+    known = np.isfinite(values)
+    return np.where(known, values, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 2)
+
+
+def _distinct(views: Sequence[View], cylinders: Cylinders, extents: Array, score: Array, most: int) -> NDArray[np.intp]:
+    """Return the best of cylinders that are nearly the same: one per cell of a grid over how they look."""
+    cells = []
+    middle = cylinders.points + extents.mean(axis=1)[:, None] * cylinders.directions
+    for view in views[:2]:
+        normal = np.cross(middle - view.camera.projection_centre, cylinders.directions)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        normal *= np.where(normal[:, :1] + 0.37 * normal[:, 1:2] < 0, -1.0, 1.0)
+        cells.append(np.rint(normal * view.camera.interior.pixels_per_radian / CELL_PX))
+    along = np.rint(np.einsum("ki,ki->k", middle, np.abs(cylinders.directions)) / np.maximum(extents[:, 1] - extents[:, 0], CELL_MM))
+    cells += [np.rint(np.log(cylinders.radii) / CELL_RADIUS)[:, None], along[:, None]]
+    order = np.argsort(-score, kind="stable")
+    _, first = np.unique(np.column_stack(cells)[order], axis=0, return_index=True)
+    return order[np.sort(first)][:most]
+
+
+def _settled(views: Sequence[View], cylinders: Cylinders, extents: Array) -> tuple[Cylinders, Array]:
+    half = (extents[:, 1] - extents[:, 0]) / 2
+    middle = Cylinders(cylinders.points + extents.mean(axis=1)[:, None] * cylinders.directions, cylinders.directions, cylinders.radii)
+    moved = middle
+    for reach in SETTLING_PX:
+        moved = drawn_onto_edges(views, moved, half, reach)
+    with np.errstate(invalid="ignore"):
+        good = np.isfinite(moved.points).all(axis=1) & (moved.radii > 0.5 * middle.radii) & (moved.radii < 2 * middle.radii)
+        good &= np.linalg.norm(moved.points - middle.points, axis=1) < FURTHEST_SETTLED
+    return moved[good], np.column_stack([-half, half])[good]
+
+
+def _accepted(views: Sequence[View], cylinders: Cylinders, extents: Array, settings: DetectSettings) -> Detected:
+    """Return the cylinders that are pipes, without those in the same place as a better one."""
+    if not len(cylinders):
+        return Detected(cylinders, extents, (), np.zeros(0))
+    edges = _mean_known(evidence(views, cylinders, extents))
+    images = agreement(views, cylinders, extents)
+    size, fits = _sizes_of(2 * cylinders.radii, settings)
+    length = extents[:, 1] - extents[:, 0]
+    good = fits & (edges >= settings.least_evidence) & (length >= settings.slenderness * 2 * cylinders.radii)
+    good &= _is_pipe(images, settings)
+    confidence = edges + settings.surface_weight * _log_ratio(images.surface)
+    order = np.argsort(-confidence * np.sqrt(length), kind="stable")
+    chosen: list[int] = []
+    for row in order[good[order]]:
+        if not _in_the_way(cylinders, extents, int(row), chosen):
+            chosen.append(int(row))
+    rows = np.array(chosen, dtype=np.intp)
+    return Detected(cylinders[rows], extents[rows], tuple(pipe_sizes()[i] for i in size[rows]), confidence[rows])
+
+
+def _is_pipe(images: Agreement, settings: DetectSettings) -> NDArray[np.bool_]:
+    """Return which surfaces (k,) are seen alike in every pair of images, stand free and do not change along the axis."""
+    known = np.isfinite(images.surface)
+    alike = np.where(known, images.surface, 1.0).min(axis=0) >= settings.least_agreement
+    free = (np.nan_to_num(images.beside, nan=-1.0) <= settings.most_beside).all(axis=0)
+    return known.any(axis=0) & alike & free & (images.constancy > settings.least_constancy)
+
+
+def _sizes_of(diameters: Array, settings: DetectSettings) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Return the nearest standard sizes' rows (k,) and whether the diameters fit; of those that do, a common one comes first."""
+    standard = np.array([size.outer_diameter for size in pipe_sizes()])
+    tolerance = np.where([size.series == 1 for size in pipe_sizes()], settings.tolerance, settings.rare_tolerance)
+    off = np.abs(diameters[:, None] / standard - 1) / tolerance
+    best = off.argmin(axis=1)
+    return best, off.min(axis=1) <= 1
+
+
+def _in_the_way(cylinders: Cylinders, extents: Array, row: int, chosen: Sequence[int]) -> bool:
+    """Tell whether a cylinder runs along and through one that is accepted already."""
+    others = np.array(chosen, dtype=np.intp)
+    ends = cylinders.points[row] + extents[row][:, None] * cylinders.directions[row]
+    offset = ends[None] - cylinders.points[others][:, None]
+    along = np.einsum("kei,ki->ke", offset, cylinders.directions[others])
+    across = np.linalg.norm(offset - along[:, :, None] * cylinders.directions[others][:, None], axis=2)
+    near = across.min(axis=1) < cylinders.radii[others] + NESTED * cylinders.radii[row]
+    beside = (along.max(axis=1) > extents[others, 0]) & (along.min(axis=1) < extents[others, 1])
+    parallel = np.abs(cylinders.directions[others] @ cylinders.directions[row]) > PARALLEL
+    return bool((near & beside & parallel).any())
