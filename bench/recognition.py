@@ -124,9 +124,9 @@ def picture(scene, views, pick, candidate, path):
             cylinder = candidate.solution.cylinder
             outline = contours(view.camera, cylinder.as_many(), np.linspace(*candidate.extent, 200)[None]).position[0]
             for side in outline:
-                side = side[np.isfinite(side[:, 0])]
-                marked.append(side)
-                cv2.polylines(image, [np.rint(side).astype(np.int32)], False, (0, 0, 255), 2)
+                seen = side[np.isfinite(side[:, 0])]
+                marked.append(seen)
+                cv2.polylines(image, [np.rint(seen).astype(np.int32)], False, (0, 0, 255), 2)
         if number == pick.camera:
             for edge in pick.edges:
                 cv2.line(image, *(tuple(int(x) for x in np.rint(point)) for point in edge), (0, 255, 255), 2)
@@ -176,9 +176,8 @@ def main():
         if not options.no_auto:
             hit, visible, answers, false, seconds = without_picks(scene, views)
             auto_sums += (hit, visible, answers, false)
-            auto.append(
-                f"| {scene.name} | {visible} | {hit} | {hit / max(visible, 1):.2f} | {answers} | {false} | {1 - false / max(answers, 1):.2f} | {seconds:.1f} |"
-            )
+            recall, precision = hit / max(visible, 1), 1 - false / max(answers, 1)
+            auto.append(f"| {scene.name} | {visible} | {hit} | {recall:.2f} | {answers} | {false} | {precision:.2f} | {seconds:.1f} |")
             print(auto[-1], flush=True)
     total = sums.sum()
     rows.append(

@@ -22,6 +22,7 @@ from pipeworkbench.recon.views import View
 
 LEAST_SAMPLES, MOST_SAMPLES = 8, 1000  # along one edge in one view
 NOT_CONVERGED = "the largest number of iterations was reached"
+NOT_MOVED = "not moved: no iterations were asked for"
 PARAMETERS = 5  # two shifts and two tilts across the axis, the radius
 
 
@@ -35,7 +36,7 @@ class AdjustSettings:
     ``least_scale`` a floor in px for that standard deviation, ``systematic`` the
     standard deviation in px of what all samples of one edge in one image have in common (calibration,
     shading of the limb), which no number of samples averages away, ``step`` the movement in mm below which
-    the iteration has converged.
+    the iteration has converged; no ``iterations`` at all give the statistics of the starting values.
     """
 
     spacing: float = 4.0
@@ -116,6 +117,9 @@ def adjust_cylinder(
     half_length = max((extent[1] - extent[0]) / 2, 1.0)
     current = Cylinder(cylinder.at(middle), cylinder.direction, cylinder.radius)
     system: _System | None = None
+    if settings.iterations == 0:
+        system = _observe(views, current, half_length, settings.ranges[-1], radius_observation, settings)
+        return system.solution(current, 0, NOT_MOVED, settings) if system else None
     for iteration in range(1, settings.iterations + 1):
         reach = settings.ranges[min(iteration, len(settings.ranges)) - 1]
         system = _observe(views, current, half_length, reach, radius_observation, settings)
@@ -193,7 +197,7 @@ class _System:
             residuals,
             redundancy,
             iterations,
-            message != NOT_CONVERGED,
+            message not in (NOT_CONVERGED, NOT_MOVED),
             self.support,
             message,
         )

@@ -115,11 +115,11 @@ def _edge_points(camera: Camera, cylinders: Cylinders, along: Array) -> tuple[Ar
     return points.reshape(-1, 3), direction.reshape(-1, 3), outward
 
 
-def outlines(camera: Camera, cylinders: Cylinders, along: Array) -> tuple[Array, Array]:
+def outlines(camera: Camera, cylinders: Cylinders, along: Array, *, unseen: bool = False) -> tuple[Array, Array]:
     """Return positions and normals (k, 2, n, 2) of the edges as :func:`contours` does, but in less time.
 
     The normals come from neighbouring samples (n >= 2) instead of derivatives: good enough to search
-    along them, not to adjust with.
+    along them, not to adjust with. ``unseen`` leaves positions beyond the image's border as they are.
     """
     points, _, _ = _edge_points(camera, cylinders, along)
     position = camera.project(points).reshape(len(cylinders), 2, along.shape[1], 2)
@@ -129,7 +129,8 @@ def outlines(camera: Camera, cylinders: Cylinders, along: Array) -> tuple[Array,
     normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=3)
     away = np.einsum("kni,kni->kn", position[:, 0] - position[:, 1], normal[:, 0])
     normal *= np.where(away < 0, -1.0, 1.0)[:, None, :, None] * np.array([1.0, -1.0])[None, :, None, None]
-    position[~camera.sees(position)] = np.nan
+    if not unseen:
+        position[~camera.sees(position)] = np.nan
     return position, normal
 
 

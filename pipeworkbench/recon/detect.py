@@ -22,7 +22,7 @@ from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
 from pipeworkbench.recon.edge_lines import EdgeLineSettings, match_lines
 from pipeworkbench.recon.evidence import EvidenceSettings, evidence
-from pipeworkbench.recon.lines import LineSettings, LineSegments, hough_segments
+from pipeworkbench.recon.lines import LineSegments, LineSettings, hough_segments
 from pipeworkbench.recon.picks import PipePick
 from pipeworkbench.recon.pipes import PipeCandidate, from_pick
 from pipeworkbench.recon.search import PickSettings
@@ -40,7 +40,7 @@ PARALLEL = 0.97  # cosine
 PICK_SAMPLES = 25
 WORKERS = 2
 FURTHEST_SETTLED = 200.0  # mm; what is drawn further off was something else
-SCREENING = EvidenceSettings(samples=16, shifts=(-14.0, 14.0))  # for many hypotheses at a time
+SCREENING = EvidenceSettings(samples=16, background=((-14.0, -6.0), (6.0, 14.0)))  # for many hypotheses at a time
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def detect_cylinders(
     best = np.argsort(-surface - 2 * second[best], kind="stable")[: settings.weighed]
     cylinders, extents, surface = cylinders[best], extents[best], surface[best]
     progress("weighing edges")
-    score = _mean_known(evidence(views, cylinders, extents, None, SCREENING)) + settings.surface_weight * surface
+    score = _edge_evidence(views, cylinders, extents, SCREENING) + settings.surface_weight * surface
     best = np.argsort(-score, kind="stable")[: settings.settled]
     progress("drawing onto edges")
     cylinders, extents = _settled(views, cylinders[best], extents[best])
@@ -184,6 +184,12 @@ def _segments_of(view: View, settings: DetectSettings) -> LineSegments:
     return hough_segments(view.edges, view.camera.interior, settings.segments)
 
 
+def _edge_evidence(views: Sequence[View], cylinders: Cylinders, extents: Array, settings: EvidenceSettings) -> Array:
+    """Return the mean log-likelihood ratio (k,) of the edges per independent stretch of a contour."""
+    ratios = evidence(views, 0, cylinders, extents, settings)
+    return _mean_known(ratios.mean(axis=2) / settings.stretches)
+
+
 def _log_ratio(correlations: Array) -> Array:
     """Return the mean log-likelihood ratio (k,) of correlations (pairs, k) for the same surface against another."""
     alike = TRUE_SHARE * np.exp(-(1 - correlations) / TRUE_DECLINE) / TRUE_DECLINE + (1 - TRUE_SHARE)
@@ -228,7 +234,7 @@ def _accepted(views: Sequence[View], cylinders: Cylinders, extents: Array, setti
     """Return the cylinders that are pipes, without those in the same place as a better one."""
     if not len(cylinders):
         return Detected(cylinders, extents, (), np.zeros(0))
-    edges = _mean_known(evidence(views, cylinders, extents))
+    edges = _edge_evidence(views, cylinders, extents, EvidenceSettings())
     images = agreement(views, cylinders, extents)
     size, fits = _sizes_of(2 * cylinders.radii, settings)
     length = extents[:, 1] - extents[:, 0]

@@ -21,14 +21,15 @@ from pipeworkbench.recon.cylinder import Cylinder, outlines
 from pipeworkbench.recon.extent import extent_of
 from pipeworkbench.recon.match import match, quality
 from pipeworkbench.recon.picks import PipePick
-from pipeworkbench.recon.search import PickSettings, clicked_extents, find_cylinders, scores_of, sizes_in
-from pipeworkbench.recon.tangents import PipeTangents, tangents_of
+from pipeworkbench.recon.search import LEAST_GAIN, Found, PickSettings, best_moved, clicked_extents, find_cylinders, joined, weights_of
+from pipeworkbench.recon.tangents import PipeTangents, all_tangents_of
 from pipeworkbench.recon.views import View
 
 COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare candidates
-FINAL = AdjustSettings(ranges=(3.0, 2.0))  # what is settled must not wander off to a neighbour
+UNMOVED = AdjustSettings(spacing=6.0, ranges=(1.5,), iterations=0)
+FINAL = AdjustSettings(ranges=(2.0, 1.5))  # what is settled must not wander off to a neighbour
 HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
-SERIES_MISFIT = 0.25  # tolerances: sizes of series 1 are far more common, another must fit that much better
+SURE_GAIN = 5.0  # logarithm; what a place must gain over the one that the edges of a whole pipe give
 LEAST_SEEN = 0.35  # part of all samples that must find an edge, else the pipe is approximate
 WORST_QUALITY = 0.75  # of the quality's search range; near it most edges are missing or others'
 LEAST_SUPPORT = 0.5  # of the clicked part's: a pipe whose extension finds fewer edges was followed too far
@@ -39,7 +40,8 @@ class PipeCandidate:
     """A pipe that fits the images: geometry, standard size (None where free) and quality.
 
     ``extent`` is where its edges are seen, in mm along the axis; ``quality`` Eq. 4's q in px over
-    all views; ``diameter`` in mm the adjusted one, with ``sigma_diameter``, before the standard's was held.
+    all views; ``diameter`` in mm the adjusted one, with ``sigma_diameter``, before the standard's was held;
+    ``score`` the logarithm of how much more likely it is than clutter, ``lead`` than the best pipe elsewhere.
     """
 
     solution: CylinderSolution
@@ -49,6 +51,7 @@ class PipeCandidate:
     diameter: float
     sigma_diameter: float
     score: float
+    lead: float
     approximate: bool
 
     @property
@@ -72,61 +75,100 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
     Returns
     -------
     tuple of PipeCandidate
-        Best first; empty where no cylinder fits the images.
+        Best first; empty where no cylinder fits the images, or where only one is wanted and another place
+        fits nearly as well.
     """
     settings = settings or PickSettings()
-    tangents = tangents_of(views[pick.camera], pick)
+    tangents = all_tangents_of(views[pick.camera], pick)
     found: list[PipeCandidate] = []
-    for cylinder in find_cylinders(views, pick, tangents, settings):
-        candidate = _adjusted(views, pick, tangents, cylinder, settings)
-        if candidate is not None and candidate.score >= settings.hopeless_score and not any(_same(candidate, other) for other in found):
+    adjusted = _adjusted(views, pick, tangents[0], find_cylinders(views, pick, tangents, settings), settings)
+    if candidates == 1 and adjusted and adjusted[0].lead < settings.least_lead:
+        return ()
+    for candidate in adjusted:
+        if not any(_same(candidate, other) for other in found):
             found.append(candidate)
-    found.sort(key=lambda c: -c.score)
-    completed = (_completed(views, candidate, pick, settings) for candidate in found)
+    completed = (_completed(views, candidate, pick, tangents[0], settings) for candidate in found)
     return tuple(itertools.islice((c for c in completed if _in_range(c, views[pick.camera], settings)), candidates))
 
 
-def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinder: Cylinder, settings: PickSettings) -> PipeCandidate | None:
-    """Adjust a hypothesis over the clicked part with all images and find its standard size."""
+def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, found: Sequence[Found], settings: PickSettings) -> list[PipeCandidate]:
+    """Adjust hypotheses over the clicked part with all images, their diameters held where they are a standard's."""
     origin = views[pick.camera].camera.projection_centre
-    start, end = clicked_extents(cylinder.as_many(), origin, tangents)[0]
-    fixed = (pick.diameter / 2, HELD_RADIUS_SIGMA) if isinstance(pick.diameter, float) else None
-    solution = adjust_cylinder(views, cylinder, (float(start), float(end)), fixed, COARSE)
-    if solution is None:
-        return None
-    diameter, sigma = 2 * solution.cylinder.radius, 2 * solution.sigma_radius
-    size, fits = _size_of(pick, diameter, sigma, settings)
-    extent = (-solution.half_length, solution.half_length)
-    score = float(scores_of(views, pick, tangents, solution.cylinder.as_many(), np.array([extent]), np.array([diameter]), settings)[0])
-    return PipeCandidate(solution, extent, size, np.inf, diameter, sigma, score, approximate=not fits or score < settings.least_score)
+    solutions: list[tuple[Found, CylinderSolution]] = []
+    for hypothesis in found:
+        start, end = clicked_extents(hypothesis.cylinder.as_many(), origin, tangents)[0]
+        held = None if pick.diameter == "free" else (hypothesis.cylinder.radius, HELD_RADIUS_SIGMA)
+        # edges measure best, but where they are other things' the place that texture and edges gave is better left
+        for how in (COARSE, UNMOVED):
+            solution = adjust_cylinder(views, hypothesis.cylinder, (float(start), float(end)), held, how)
+            if solution is not None:
+                solutions.append((hypothesis, solution))
+    if not solutions:
+        return []
+    series = np.array([hypothesis.size.series if hypothesis.size else 1 for hypothesis, _ in solutions], float)
+    cylinders = joined([solution.cylinder.as_many() for _, solution in solutions])
+    weights = weights_of(views, pick, tangents, cylinders, series, settings)
+    scores = weights.total
+    candidates = []
+    for hypothesis in found:
+        rows = [row for row, (owner, _) in enumerate(solutions) if owner is hypothesis]
+        if not rows:
+            continue
+        row = max(rows, key=lambda row: float(scores[row]) - (LEAST_GAIN if solutions[row][1].iterations == 0 else 0.0))
+        if weights.elsewhere[row] < settings.least_elsewhere:
+            continue
+        solution, score = solutions[row][1], float(scores[row])
+        diameter, sigma = 2 * solution.cylinder.radius, 2 * solution.sigma_radius
+        size = pipe_size(pick.diameter) if isinstance(pick.diameter, float) else hypothesis.size
+        extent = (-solution.half_length, solution.half_length)
+        poor = score < settings.least_score
+        candidates.append(PipeCandidate(solution, extent, size, np.inf, diameter, sigma, score, hypothesis.lead, approximate=poor))
+    return candidates
 
 
-def _size_of(pick: PipePick, diameter: float, sigma: float, settings: PickSettings) -> tuple[PipeSize | None, bool]:
-    """Return the standard size that the adjusted diameter is taken for, and whether it fits well."""
-    if pick.diameter == "free":
-        return None, True
-    if pick.diameter is not None:
-        return pipe_size(pick.diameter), True
-    tolerance = np.hypot(max(settings.tolerance * diameter, settings.least_tolerance), 2 * sigma)
-    best = min(sizes_in(settings), key=lambda size: abs(size.outer_diameter - diameter) / tolerance + SERIES_MISFIT * (size.series - 1))
-    return best, bool(abs(best.outer_diameter - diameter) <= tolerance)
-
-
-def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, settings: PickSettings) -> PipeCandidate:
-    """Hold the standard diameter, follow the pipe to where its edges end, adjust it over all of its length."""
+def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, tangents: PipeTangents, settings: PickSettings) -> PipeCandidate:
+    """Follow the pipe to where its edges end and adjust it over all of its length, a standard diameter held."""
     solution, extent = candidate.solution, candidate.extent
-    diameter = pick.diameter if isinstance(pick.diameter, float) else candidate.size.outer_diameter if candidate.size else None
-    held = None if diameter is None else (diameter / 2, HELD_RADIUS_SIGMA)
-    solution = adjust_cylinder(views, solution.cylinder, extent, held, FINAL) or solution
+    held = None if pick.diameter == "free" else (solution.cylinder.radius, HELD_RADIUS_SIGMA)
     followed = extent_of(views, solution.cylinder, extent, settings.extent)
-    longer = adjust_cylinder(views, solution.cylinder, followed, held, FINAL)
+    longer = _adjusted_over(views, pick, tangents, solution.cylinder, followed, held, settings)
     if longer is not None and longer.support >= LEAST_SUPPORT * solution.support:
         solution = longer
         extent = extent_of(views, longer.cylinder, (-longer.half_length, longer.half_length), settings.extent)
     poor = candidate.approximate or solution.support < LEAST_SEEN
-    measured = candidate if held else replace(candidate, diameter=2 * solution.cylinder.radius, sigma_diameter=2 * solution.sigma_radius)
+    free = adjust_cylinder(views, solution.cylinder, extent, None, FINAL) or solution
+    diameter, sigma = 2 * free.cylinder.radius, 2 * free.sigma_radius
+    if held is not None:
+        tolerance = np.hypot(max(settings.tolerance * diameter, settings.least_tolerance), 2 * sigma)
+        poor |= pick.diameter is None and abs(diameter - 2 * solution.cylinder.radius) > tolerance
     q = _final_quality(views, solution.cylinder, extent, settings)
-    return replace(measured, solution=solution, extent=extent, quality=q, approximate=poor or q > WORST_QUALITY * settings.final_range)
+    poor |= q > WORST_QUALITY * settings.final_range
+    return replace(candidate, solution=solution, extent=extent, quality=q, diameter=diameter, sigma_diameter=sigma, approximate=bool(poor))
+
+
+def _adjusted_over(
+    views: Sequence[View],
+    pick: PipePick,
+    tangents: PipeTangents,
+    cylinder: Cylinder,
+    extent: tuple[float, float],
+    held: tuple[float, float] | None,
+    settings: PickSettings,
+) -> CylinderSolution | None:
+    """Adjust a pipe over all of its length, but not to edges on which its texture does not fit."""
+    wide = adjust_cylinder(views, cylinder, extent, held, FINAL)
+    unmoved = adjust_cylinder(views, cylinder, extent, held, UNMOVED)
+    if wide is None or unmoved is None or held is None:
+        return wide or unmoved
+    half = wide.half_length
+    ends = np.array([[-half, half]] * 2)
+    both = joined([wide.cylinder.as_many(), unmoved.cylinder.as_many()])
+    moved, weights = best_moved(views, pick, tangents, both, ends, np.ones(2), settings)
+    as_it_is = weights_of(views, pick, tangents, wide.cylinder.as_many(), 1.0, settings, ends[:1]).total[0]
+    row = int(np.argmax(weights.total))
+    if weights.total[row] < as_it_is + SURE_GAIN:
+        return wide
+    return adjust_cylinder(views, moved.one(row), (-half, half), held, UNMOVED) or wide
 
 
 def _final_quality(views: Sequence[View], cylinder: Cylinder, extent: tuple[float, float], settings: PickSettings) -> float:
@@ -152,4 +194,4 @@ def _same(one: PipeCandidate, other: PipeCandidate) -> bool:
     ends = one.ends
     offset = ends - other.solution.cylinder.point
     offset -= np.outer(offset @ other.solution.cylinder.direction, other.solution.cylinder.direction)
-    return bool(np.linalg.norm(offset, axis=1).max() < 0.1 * other.diameter)
+    return one.size == other.size and bool(np.linalg.norm(offset, axis=1).max() < 0.1 * other.diameter)
