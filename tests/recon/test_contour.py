@@ -211,16 +211,16 @@ def deepest_before(component, point, margin):
 
 
 @given(rotations, st.sampled_from([60.0, 90.0]))
-@settings(max_examples=12)
+@settings(max_examples=20)
 def test_an_elbow_hides_its_own_contour_where_the_sight_passes_through_it(rotation, angle_deg):
     bend = elbow(rotation, angle_deg, bend_radius=90.0)
     found = contour_of(CAMERA, [bend], interval=3.0)
-    depth = np.array([deepest_before(bend, point, 10.0) for point in found.point])
+    # a sight that touches the surface without entering is 0.009 mm above it 1 mm before it touches
+    depth = np.array([deepest_before(bend, point, 1.0) for point in found.point])
     assert not found.occluded.any()
-    assert found.hidden[depth > 0.5].all()
-    # what hides a sample may lie nearer than 10 mm: at a bend's end, and where a contour turns back
-    assert (found.hidden & (depth < -0.5)).mean() < 0.1
-    assert found.hidden.any() == (depth > 0.5).any() or found.hidden.mean() < 0.1
+    assert found.hidden[depth > 0.05].all()
+    # what hides a sample may, where a contour turns back, lie in that last millimetre
+    assert (found.hidden & (depth < -0.002)).sum() <= 1 + 0.03 * len(found)
 
 
 @pytest.mark.parametrize("axis", [(0.6, -0.8, 0.0), (-0.6, 0.8, 0.0), (1.0, 0.05, 0.1), (0.2, 0.9, -0.5), (0.0, -1.0, 0.0)])
