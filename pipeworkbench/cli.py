@@ -23,7 +23,10 @@ from pipeworkbench.errors import InputError, PipeWorkbenchError
 
 if TYPE_CHECKING:
     from pipeworkbench.pipeline import Pipeline
+    from pipeworkbench.recon.picks import Picks
     from pipeworkbench.recon.reconstruct import Reconstruction
+    from pipeworkbench.recon.search import PickSettings
+    from pipeworkbench.recon.station import Station
 
 SMALLEST_MM, LARGEST_MM, NEAREST_MM = 1.0, 200_000.0, 200.0  # of ranges that make sense
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0}  # in mm
@@ -65,12 +68,13 @@ def _parser() -> argparse.ArgumentParser:
 
     command = commands.add_parser(
         "reconstruct",
-        help="pipes from a station's photographs and picks",
-        description="Reconstructs the picked pipes of a station and writes them in the formats of the outputs' endings.",
+        help="pipes from a station's photographs, picked or not",
+        description="Reconstructs the pipes of a station, picked or found by themselves, and writes them in the formats of the outputs' endings.",
         epilog="Endings: .json .csv .ifc .step .FCStd .png. Lengths are mm in the station's level frame.",
     )
     command.add_argument("station", metavar="STATION_DIR", type=Path, help="folder with station.json (or that file)")
     command.add_argument("--picks", metavar="FILE", type=Path, help="picks.json; default: the one beside station.json")
+    command.add_argument("--auto", action="store_true", help="find the pipes without picks; most, not all of them: look at the .png")
     command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output, may be repeated")
     command.add_argument("--working-range", metavar=("NEAR", "FAR"), nargs=2, type=float, help="distances of the pipes from the rig in mm")
     command.add_argument("--diameters", metavar=("FROM", "TO"), nargs=2, type=float, help="outside diameters to consider in mm")
@@ -106,40 +110,26 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
 
 def _reconstruct(options: argparse.Namespace) -> int:
     from pipeworkbench.exports.writers import Result, check_paths, write
-    from pipeworkbench.recon.picks import read_picks
-    from pipeworkbench.recon.reconstruct import reconstruct
-    from pipeworkbench.recon.search import PickSettings, sizes_in
+    from pipeworkbench.recon.reconstruct import reconstruct, reconstruct_without_picks
     from pipeworkbench.recon.station import read_station
 
     began = time.perf_counter()
     check_paths(options.out)
+    if options.auto and options.picks is not None:
+        raise InputError(COMMAND_LINE, "--auto", "finds the pipes without picks, and --picks names some", "give one of the two")
     station = read_station(options.station)
     picks_file = options.picks or station.source.parent / "picks.json"
     check_paths(options.out, inputs=(station.source, picks_file, *station.images))
-    picks = read_picks(picks_file, station)
-    if not picks.pipes:
-        raise InputError(picks_file, "picks", "there are only flange picks, and flanges are not reconstructed yet", "pick pipes too")
-    settings = PickSettings()
-    if options.working_range is not None:
-        settings = replace(settings, working_range=_range(options.working_range, "--working-range"))
-        if settings.working_range[0] < NEAREST_MM:
-            raise InputError("the command line", "--working-range", "begins inside the rig", f"begin at {NEAREST_MM:g} mm or more")
-    if options.diameters is not None:
-        settings = replace(settings, diameter_range=_range(options.diameters, "--diameters"))
-        if not sizes_in(settings) and any(pick.diameter is None for pick in picks.pipes):
-            raise InputError("the command line", "--diameters", "holds no diameter of EN 10220", "widen it, or pick with a free diameter")
-
+    picks = None if options.auto else _picks_of(picks_file, station)
+    settings = _settings_of(options, picks)
     show = not options.quiet and not options.json
     with _Progress(show=show) as progress:
-        found = reconstruct(station, picks, settings, progress)
+        found = reconstruct_without_picks(station, settings, progress) if picks is None else reconstruct(station, picks, settings, progress)
     if not found.pipeline.components:
-        raise InputError(
-            picks_file,
-            "picks",
-            "no pipe fits the images",
-            "check that the picks are on pipe edges, that the calibration belongs to the photographs and that "
-            "working range and diameters hold the pipes",
-        )
+        what = "the calibration belongs to the photographs and that working range and diameters hold the pipes"
+        if picks is None:
+            raise InputError(station.source, "cameras", "no pipe was found in the photographs", f"check that {what}, or pick the pipes")
+        raise InputError(picks_file, "picks", "no pipe fits the images", f"check that the picks are on pipe edges, that {what}")
     result = Result(found.pipeline, (station,))
     for path in options.out:
         write(result, path)
@@ -149,6 +139,32 @@ def _reconstruct(options: argparse.Namespace) -> int:
     elif show:
         _print_table(found, options.out, seconds)
     return DONE
+
+
+def _picks_of(file: Path, station: Station) -> Picks:
+    from pipeworkbench.recon.picks import read_picks
+
+    picks = read_picks(file, station)
+    if not picks.pipes:
+        raise InputError(file, "picks", "there are only flange picks, and flanges are not reconstructed yet", "pick pipes too")
+    return picks
+
+
+def _settings_of(options: argparse.Namespace, picks: Picks | None) -> PickSettings:
+    """Return the settings that the options ask for; the picks say whether standard diameters are needed."""
+    from pipeworkbench.recon.search import PickSettings, sizes_in
+
+    settings = PickSettings()
+    if options.working_range is not None:
+        settings = replace(settings, working_range=_range(options.working_range, "--working-range"))
+        if settings.working_range[0] < NEAREST_MM:
+            raise InputError(COMMAND_LINE, "--working-range", "begins inside the rig", f"begin at {NEAREST_MM:g} mm or more")
+    if options.diameters is not None:
+        settings = replace(settings, diameter_range=_range(options.diameters, "--diameters"))
+        standard = picks is None or any(pick.diameter is None for pick in picks.pipes)
+        if standard and not sizes_in(settings):
+            raise InputError(COMMAND_LINE, "--diameters", "holds no diameter of EN 10220", "widen it, or pick with a free diameter")
+    return settings
 
 
 def _convert(options: argparse.Namespace) -> int:

@@ -596,3 +596,26 @@ def test_uncompressed_images_agree_with_the_known_truth(shared, tmp_path, capsys
     assert main(["reconstruct", str(shared / "scenes" / "dummy" / "A"), "--out", str(result), "--quiet"]) == 0
     assert capsys.readouterr().out == ""
     assert_good(score(shared, result))
+
+
+def test_auto_and_picks_exclude_each_other(sample, refusal):
+    said = refusal(sample, "--auto", "--picks", str(sample / "picks.json"))
+    assert "--auto" in said
+    assert "give one of the two" in said
+
+
+@pytest.mark.slow
+def test_pipes_are_found_without_picks_and_agree_with_the_known_truth(sample, shared, tmp_path, altered):
+    station = altered()
+    (station / "picks.json").unlink()
+    result = tmp_path / "auto.json"
+    assert main(["reconstruct", str(station), "--auto", "--out", str(result), "--quiet"]) == 0
+    pipeline = Pipeline.read(result)
+    assert all(pipe.pick is None for pipe in pipeline.pipes)
+    assert len({pipe.id for pipe in pipeline.pipes}) == len(pipeline.pipes)
+    command = [sys.executable, str(shared / "tools" / "score.py"), str(result), str(shared / "scenes" / "dummy"), "--auto", "--json"]
+    found = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    assert found["pipes"]["correct"] >= 7
+    assert found["false_pipes"] <= 1
+    assert found["duplicate_pipes"] == 0
+    assert found["pipes"]["position_mm"]["mean"] <= 1.0

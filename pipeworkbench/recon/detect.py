@@ -37,8 +37,10 @@ SETTLING_PX = (3.0, 3.0, 2.0)  # search ranges of the steps onto the edges
 CELL_PX, CELL_MM, CELL_RADIUS = 6.0, 100.0, 0.04  # cylinders in one cell of direction, place and relative radius are alike
 NESTED = 0.8  # radii; of what lies further beside an accepted pipe, most is outside it
 PARALLEL = 0.97  # cosine
-PICK_SAMPLES = 25
-WORKERS = 2
+PICK_SAMPLES = 25  # along a detected cylinder, to find what of it an image shows
+WORKERS = 2  # more wait for each other's interpreter lock
+STEPS = 7  # that are reported
+SAME_PLACE = 0.5  # radii; a measured pipe further from what was detected is another one
 FURTHEST_SETTLED = 200.0  # mm; what is drawn further off was something else
 SCREENING = EvidenceSettings(samples=16, background=((-14.0, -6.0), (6.0, 14.0)))  # for many hypotheses at a time
 
@@ -47,11 +49,13 @@ SCREENING = EvidenceSettings(samples=16, background=((-14.0, -6.0), (6.0, 14.0))
 class DetectSettings:
     """Tunables; lengths in mm.
 
-    ``working_range`` and ``diameter_range`` limit the pipes. ``screened``, ``weighed`` and ``settled`` are how many
-    hypotheses go on to the next step at most; ``surface_weight`` is what the images' agreement about the surface
-    counts against the evidence of the edges. A pipe is accepted with at least ``least_evidence``, ``least_agreement`` of
-    its surface in every pair of images, at most ``most_beside`` of what is beside it, ``least_constancy`` along
-    the axis, ``slenderness`` and a diameter within ``tolerance`` of one of series 1 or ``rare_tolerance`` of another (parts).
+    ``working_range`` and ``diameter_range`` limit the pipes (below 15 mm mouldings and rails look like pipes).
+    ``screened``, ``weighed`` and ``settled`` are how many hypotheses go on to the next step at most;
+    ``surface_weight`` is what the images' agreement about the surface counts against the evidence of
+    the edges. A pipe is accepted with at least ``least_evidence``, ``least_agreement`` of its surface in
+    every pair of images, at most ``most_beside`` of what is beside it, ``least_constancy`` along the
+    axis, ``slenderness`` and a diameter within ``tolerance`` of one of series 1 or ``rare_tolerance`` of
+    another (parts of the diameter).
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
@@ -151,7 +155,12 @@ def detect(
     picks = [pick for row in range(len(found.sizes)) if (pick := _as_pick(views, found, row)) is not None]
     with ThreadPoolExecutor(WORKERS) as threads:
         answers = list(threads.map(lambda pick: from_pick(views, pick, pick_settings), picks))
-    candidates = [answer[0] for answer in answers if answer and not answer[0].approximate]
+    # a pipe that the measurement takes for another than the detection is not sure enough
+    candidates = [
+        answer[0]
+        for pick, answer in zip(picks, answers, strict=True)
+        if answer and not answer[0].approximate and _confirms(answer[0], found, pick.index)
+    ]
     if not candidates:
         return ()
     cylinders = Cylinders(
@@ -165,6 +174,14 @@ def detect(
         if not _in_the_way(cylinders, extents, row, chosen):
             chosen.append(row)
     return tuple(candidates[row] for row in chosen)
+
+
+def _confirms(candidate: PipeCandidate, found: Detected, row: int) -> bool:
+    """Tell whether a measured pipe has the size and, over the detected extent, the place of a detected one."""
+    cylinder, size = candidate.solution.cylinder, found.sizes[row]
+    offset = found.cylinders.points[row] + found.extents[row][:, None] * found.cylinders.directions[row] - cylinder.point
+    offset -= (offset @ cylinder.direction)[:, None] * cylinder.direction
+    return candidate.size == size and bool(np.linalg.norm(offset, axis=1).max() <= SAME_PLACE * cylinder.radius)
 
 
 def _as_pick(views: Sequence[View], found: Detected, row: int) -> PipePick | None:

@@ -103,6 +103,9 @@ def match_lines(views: Sequence[View], segments: Sequence[LineSegments], setting
         The best supported first; where an image confirms a line twice, once.
     """
     settings = settings or EdgeLineSettings()
+    if len(views) < 2:
+        none = np.zeros((0, 2), np.intp)
+        return EdgeLines(np.zeros((0, 2, 3)), np.zeros((0, 3)), np.zeros(0), none, none)
     planes = [_planes_of(view.camera, lines, settings) for view, lines in zip(views, segments, strict=True)]
     found = [_between(views, planes, pair, settings) for pair in itertools.combinations(range(len(views)), 2)]
     lines = EdgeLines(*(np.concatenate([getattr(part, name) for part in found]) for name in ("ends", "bright", "support", "views", "rows")))
@@ -152,6 +155,8 @@ def _between(views: Sequence[View], planes: Sequence[_Planes], pair: tuple[int, 
     rows, ends, bright = rows[flat], ends[flat], bright[flat]
     others = [view for number, view in enumerate(views) if number not in pair]
     support = np.max([_confirmed(view, ends, bright, settings) for view in others], axis=0) if others else np.ones(len(rows))
+    # cameras that do not see the line say nothing against it, nor for it where another denies it
+    support = np.where(support < 0, settings.least_witnesses, support)
     good = support >= settings.least_witnesses
     return EdgeLines(ends[good], bright[good], support[good], np.tile(pair, (int(good.sum()), 1)), rows[good])
 
@@ -196,7 +201,7 @@ def _on_planes(centre: Array, rays: Array, other_centre: Array, normals: Array) 
 
 
 def _confirmed(view: View, ends: Array, bright: Array, settings: EdgeLineSettings) -> Array:
-    """Return which part (k,) of lines' samples in another image has an edge of the same polarity."""
+    """Return which part (k,) of lines' samples in another image has an edge of the same polarity, -1 where it does not see them."""
     part = (np.arange(settings.samples) + 0.5) / settings.samples
     points = ends[:, :1] + part[:, None] * (ends[:, 1:] - ends[:, :1])
     position, derivative = view.camera.project_with_derivative(points.reshape(-1, 3))
@@ -209,6 +214,5 @@ def _confirmed(view: View, ends: Array, bright: Array, settings: EdgeLineSetting
     position[~inside] = np.nan
     hit = match(view.edges, position, normal, settings.witness_range, np.ones(len(position))).found.reshape(-1, settings.samples)
     inside = inside.reshape(-1, settings.samples)
-    # a camera that does not see the line says nothing against it
     seen = inside.sum(axis=1)
-    return np.where(seen >= settings.samples / 2, hit.sum(axis=1) / np.maximum(seen, 1), settings.least_witnesses)
+    return np.where(seen >= settings.samples / 2, hit.sum(axis=1) / np.maximum(seen, 1), -1.0)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A station's picks become a pipeline: the main job, from images to components."""
+"""A station becomes a pipeline: the main job, from images and picks, or images alone, to components."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -76,19 +76,60 @@ def reconstruct(
     return Reconstruction(Pipeline.of_station(station.name, tuple(pipes)), tuple(failed), tuple(p.index for p in picks.flanges))
 
 
+def reconstruct_without_picks(
+    station: Station,
+    settings: PickSettings | None = None,
+    progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
+) -> Reconstruction:
+    """Reconstruct the pipes of a station without picks.
+
+    Parameters
+    ----------
+    station : Station
+    settings : PickSettings, optional
+        Its working range and diameters limit what is looked for.
+    progress : callable
+        Called with what is being done, how many steps are done and how many there are.
+
+    Raises
+    ------
+    InputError
+        Where an image does not fit the station.
+    """
+    from pipeworkbench.recon.detect import STEPS, DetectSettings, detect
+
+    settings = settings or PickSettings()
+    limits = replace(DetectSettings(), working_range=settings.working_range)
+    # without a wish the range stays at what can be told from clutter
+    if settings.diameter_range != PickSettings().diameter_range:
+        limits = replace(limits, diameter_range=settings.diameter_range)
+    done = 0
+
+    def report(text: str) -> None:
+        nonlocal done
+        done += 1
+        progress(text, done, STEPS + 1)
+
+    progress("finding edges", 0, STEPS + 1)
+    candidates = detect(views_of(station), limits, settings, report)
+    pipes = tuple(as_component(candidate, None, station.name, number) for number, candidate in enumerate(candidates))
+    progress("done", STEPS + 1, STEPS + 1)
+    return Reconstruction(Pipeline.of_station(station.name, pipes), (), ())
+
+
 def pipe_from_pick(views: tuple[View, ...], pick: PipePick, station: Station, settings: PickSettings | None = None) -> Pipe | None:
     """Return the best pipe for a pick, None where no cylinder fits the images."""
     candidates = from_pick(views, pick, settings)
     return as_component(candidates[0], pick, station.name) if candidates else None
 
 
-def as_component(candidate: PipeCandidate, pick: PipePick, station: str) -> Pipe:
-    """Return a candidate as a component of the pipeline."""
+def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, number: int = 0) -> Pipe:
+    """Return a candidate as a component of the pipeline; without a pick it is named after its ``number``."""
     solution, size = candidate.solution, candidate.size
     start, end = ((float(x), float(y), float(z)) for x, y, z in candidate.ends)
     sigma = solution.sigma_position
     return Pipe(
-        id=f"{station}-P{pick.index:02d}",
+        id=f"{station}-P{pick.index:02d}" if pick else f"{station}-A{number:02d}",
         start=start,
         end=end,
         outer_diameter=size.outer_diameter if size else round(2 * solution.cylinder.radius, 3),
@@ -96,7 +137,7 @@ def as_component(candidate: PipeCandidate, pick: PipePick, station: str) -> Pipe
         dn=size.dn if size else None,
         standard=PIPE_STANDARD if size else None,
         verified=size.weakest_source if size else None,  # type: ignore[arg-type]  # the table holds 0, 1, 2
-        pick=pick.index,
+        pick=pick.index if pick else None,
         station=station,
         quality=round(candidate.quality, 4),
         sigma_position=(round(float(sigma[0]), 4), round(float(sigma[1]), 4), round(float(sigma[2]), 4)),

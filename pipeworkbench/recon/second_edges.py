@@ -69,7 +69,7 @@ def cylinders_from_edges(
         hits, known = (np.array(x) for x in zip(*threads.map(lambda view: _hits(view, lines, diameters, settings), views), strict=True))
     enough = (hits >= settings.least_hits).sum(axis=0) >= settings.least_views
     score = np.where(enough, hits.sum(axis=0) / np.maximum(known.sum(axis=0), settings.least_views), 0.0)
-    score = score.reshape(len(lines), -1)
+    score = score.reshape(len(lines), 2 * len(diameters))
     best = np.argsort(-score, axis=1)[:, : settings.kept]
     row = np.repeat(np.arange(len(lines)), best.shape[1])
     choice = best.ravel()

@@ -60,7 +60,7 @@ def agreement(views: Sequence[View], cylinders: Cylinders, extents: Array, along
     for band in bands:
         values = _correlations(band)
         known = np.isfinite(values).any(axis=0)
-        least.append(np.where(known, np.where(np.isfinite(values), values, np.inf).min(axis=0), np.nan))
+        least.append(np.where(known, np.where(np.isfinite(values), values, np.inf).min(axis=0, initial=np.inf), np.nan))
     return Agreement(_correlations(grey), np.array(least), _constancy(grey))
 
 
@@ -123,7 +123,7 @@ def _correlations(grey: NDArray[np.float32]) -> Array:
         scale = np.sqrt((a * a).sum(axis=1) * (b * b).sum(axis=1))
         value = (a * b).sum(axis=1) / np.maximum(scale, LEAST_SPREAD)
         result.append(np.where(known.mean(axis=1) >= LEAST_KNOWN, value, np.nan))
-    return np.array(result)
+    return np.array(result).reshape(len(result), grey.shape[1])
 
 
 def _constancy(grey: NDArray[np.float32]) -> Array:
