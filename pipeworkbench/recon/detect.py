@@ -112,6 +112,8 @@ def detect_cylinders(
     diameters = np.array([size.outer_diameter for size in common])
     progress("finding second edges")
     cylinders, extents, second = cylinders_from_edges(views, lines, diameters, settings.second_edges)
+    if not len(cylinders):
+        return Detected(cylinders, extents, (), np.zeros(0))
     progress("comparing surfaces")
     surface = _log_ratio(surface_agreement(views, cylinders, extents, 10, 7))
     best = _distinct(views, cylinders, extents, surface + 2 * second, settings.screened)

@@ -21,12 +21,14 @@ SAME_EDGE_PX = 3.0  # two clicked edges nearer than this over their whole length
 LEAST_LENGTH_PX = 8.0  # a direction from points nearer together than this is not worth having
 
 Point = tuple[Finite, Finite]
+Edge = Annotated[list[Point], Field(min_length=1, max_length=2)]
 
 
 class _PipePick(BaseModel):
     kind: Literal["pipe"]
     camera: str
-    edges: tuple[tuple[Point, Point], tuple[Point, Point]]
+    edges: tuple[Edge, Edge] | None = None
+    point: Point | None = None
     diameter: Positive | Literal["free"] | None = None
 
 
@@ -43,10 +45,10 @@ class _Picks(BaseModel):
 
 @dataclass(frozen=True, eq=False)
 class PipePick:
-    """Two edges of a pipe in one image.
+    """A pipe clicked in one image.
 
-    ``index`` is the pick's place in its file, ``camera`` the camera's place in the station, edges
-    (2, 2, 2): edge, point, pixel coordinate; ``diameter`` in mm where the user fixed it, "free" for
+    ``index`` is the pick's place in its file, ``camera`` the camera's place in the station, ``edges``
+    pixel coordinates: (2, 2, 2) two points on each edge, or (2, 1, 2) one near each; ``diameter`` in mm where the user fixed it, "free" for
     a pipe of any diameter, None for one of the standard's.
     """
 
@@ -100,15 +102,34 @@ def picks_from(data: Any, station: Station, source: object = "picks") -> Picks:
         if camera is None:
             names = ", ".join(c.name for c in station.cameras)
             raise InputError(source, f"picks[{index}].camera", f"no camera '{pick.camera}'", f"use one of {names}")
-        points = np.array(pick.edges if isinstance(pick, _PipePick) else pick.point, float)
+        points = _clicks_of(pick, index, source) if isinstance(pick, _PipePick) else np.array(pick.point, float)
         _refuse_outside(points, station, camera, f"picks[{index}]", source)
         if isinstance(pick, _PipePick):
             pipes.append(PipePick(index, camera, points, pick.diameter))
-            _refuse_poor_edges(pipes[-1], source)
+            if points.shape == (2, 2, 2):
+                _refuse_poor_edges(pipes[-1], source)
+            else:
+                _refuse_same_point(points, index, source)
         else:
             flanges.append(FlangePick(index, camera, points))
     _refuse_repeated(pipes, source)
     return Picks(tuple(pipes), tuple(flanges))
+
+
+def _clicks_of(pick: _PipePick, index: int, source: object) -> Array:
+    """Return what was clicked (edges, points, 2)."""
+    if pick.edges is None:
+        what = "is missing" if pick.point is None else "is missing: one point inside the pipe is not understood yet"
+        raise InputError(source, f"picks[{index}].edges", what, "click near both edges of the pipe, once or twice each")
+    if len({len(edge) for edge in pick.edges}) > 1:
+        raise InputError(source, f"picks[{index}].edges", "one edge has one point and the other two", "give as many points on either edge")
+    return np.array(pick.edges, float)
+
+
+def _refuse_same_point(points: Array, index: int, source: object) -> None:
+    apart = float(np.linalg.norm(points[1, 0] - points[0, 0]))
+    if apart < SAME_EDGE_PX:
+        raise InputError(source, f"picks[{index}].edges", f"the points are only {apart:.1f} px apart", "click one edge on each side of the pipe")
 
 
 def _refuse_outside(points: Array, station: Station, camera: int, key: str, source: object) -> None:
@@ -139,8 +160,9 @@ def _refuse_poor_edges(pick: PipePick, source: object) -> None:
 
 def _refuse_repeated(pipes: Sequence[PipePick], source: object) -> None:
     """Refuse a pipe that was picked twice: both its edges are another pick's edges."""
-    for number, later in enumerate(pipes):
-        for earlier in pipes[:number]:
+    whole = [pick for pick in pipes if pick.edges.shape == (2, 2, 2)]
+    for number, later in enumerate(whole):
+        for earlier in whole[:number]:
             if later.camera != earlier.camera:
                 continue
             for order in ((0, 1), (1, 0)):

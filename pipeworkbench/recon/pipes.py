@@ -17,6 +17,7 @@ import numpy as np
 from pipeworkbench.catalogue import PipeSize, pipe_size
 from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.clicks import complete_picks
 from pipeworkbench.recon.cylinder import Cylinder, outlines
 from pipeworkbench.recon.extent import extent_of
 from pipeworkbench.recon.match import match, quality
@@ -61,7 +62,7 @@ class PipeCandidate:
 
 
 def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | None = None, candidates: int = 1) -> tuple[PipeCandidate, ...]:
-    """Find the pipe whose two edges were clicked in one image.
+    """Find the pipe that was clicked in one image: by two points on each edge or one near each.
 
     Parameters
     ----------
@@ -79,6 +80,12 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
         fits nearly as well.
     """
     settings = settings or PickSettings()
+    answers = [answer for whole in complete_picks(views[pick.camera], pick) for answer in _from_edges(views, whole, settings, candidates)]
+    answers.sort(key=lambda answer: -answer.score)
+    return tuple(answers[:candidates])
+
+
+def _from_edges(views: Sequence[View], pick: PipePick, settings: PickSettings, candidates: int) -> tuple[PipeCandidate, ...]:
     tangents = all_tangents_of(views[pick.camera], pick)
     found: list[PipeCandidate] = []
     adjusted = _adjusted(views, pick, tangents[0], find_cylinders(views, pick, tangents, settings), settings)

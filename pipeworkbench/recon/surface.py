@@ -113,7 +113,7 @@ def _grey(views: Sequence[View], points: Array) -> NDArray[np.float32]:
 
 def _correlations(grey: NDArray[np.float32]) -> Array:
     """Return the correlations (pairs, k) between every two views (views, k, along, across)."""
-    flat = grey.reshape(*grey.shape[:2], -1)
+    flat = grey.reshape(*grey.shape[:2], grey.shape[2] * grey.shape[3])
     result = []
     for one, other in itertools.combinations(flat, 2):
         known = np.isfinite(one) & np.isfinite(other)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from synthetic import TARGET, pipe, views
+from synthetic import TARGET, cameras, pipe, views
 
 from pipeworkbench.recon.cylinder import edge_lines
 from pipeworkbench.recon.edge_lines import EdgeLineSettings, match_lines
@@ -25,7 +25,8 @@ def seen():
 @pytest.fixture(scope="module")
 def blank():
     """Views of three cameras without edges."""
-    return views([])
+    (one,) = views([], 1)
+    return [replace(one, camera=camera) for camera in cameras()]
 
 
 def exact_segments(camera, truth, sides=(0, 1)):
@@ -216,6 +217,14 @@ def test_line_in_the_plane_of_the_base_needs_another_pair(blank):
     assert (LEVEL.distance(lines.ends.reshape(-1, 3)) < 1.02 * LEVEL.diameter / 2).all()
 
 
+@pytest.mark.parametrize(("slope", "count"), [(3.0, 0), (12.0, 2)])
+def test_planes_that_are_nearly_one_know_no_line(blank, slope, count):
+    # base over distance is a fifth: the angle between the planes is a fifth of the slope
+    truth = pipe(114.3, (90.0 - slope, 0.0))
+    assert len(match_lines(blank[:2], [exact_segments(view.camera, truth) for view in blank[:2]])) == count
+
+
+@pytest.mark.slow
 def test_level_edges_in_pictures_come_from_the_pairs_that_know_them():
     level = views([LEVEL], seed=30)
     lines = lines_in(level)

@@ -116,3 +116,32 @@ def test_edges_that_are_no_points_are_refused(station, edges):
 @pytest.mark.parametrize("edges", [[], EDGES[:1], [EDGES[0], EDGES[1][:1]], [[[1.0], [2.0]], EDGES[1]]])
 def test_edges_with_too_few_points_are_refused(station, edges):
     assert refused(file(pipe(edges=edges)), station).key.startswith("picks[0].edges")
+
+
+def test_one_point_near_each_edge_will_do(station):
+    (pick,) = picks_from(file(pipe(edges=[[[500.0, 600.0]], [[580.0, 610.0]]])), station).pipes
+    assert pick.edges.shape == (2, 1, 2)
+    assert pick.edges[1, 0].tolist() == [580.0, 610.0]
+
+
+@pytest.mark.parametrize(
+    ("edges", "words"),
+    [
+        ([[[500.0, 600.0]], [[580.0, 610.0], [580.0, 700.0]]], "as many points"),
+        ([[[500.0, 600.0]], [[501.0, 601.0]]], "1.4 px apart"),
+        ([[[500.0, 600.0]], [[5000.0, 601.0]]], "outside the image"),
+        ([[], [[580.0, 610.0]]], "edges"),
+    ],
+)
+def test_single_points_that_do_not_fit_are_refused(station, edges, words):
+    error = refused(file(pipe(edges=edges)), station)
+    assert words in str(error)
+    assert "picks[0]" in str(error)
+
+
+def test_one_point_inside_a_pipe_is_told_what_is_needed(station):
+    data = pipe(point=[540.0, 600.0])
+    del data["edges"]
+    error = refused(file(data), station)
+    assert "one point inside" in str(error)
+    assert "click near both edges" in str(error)
