@@ -25,8 +25,9 @@ from pipeworkbench.recon.detect import detect
 from pipeworkbench.recon.images import read_image
 from pipeworkbench.recon.picks import read_picks
 from pipeworkbench.recon.pipes import from_pick
+from pipeworkbench.recon.plane_cylinders import cylinder_from_diameter
 from pipeworkbench.recon.station import read_station
-from pipeworkbench.recon.tangent_planes import apparent_pipe, cylinder_from_diameter
+from pipeworkbench.recon.tangent_planes import apparent_pipe
 from pipeworkbench.recon.views import views_of
 
 PAPER_RECOGNITION = "| paper, Table 5 (85 pipes) | 85 | 65 (76 %) | 12 (14 %) | 8 (10 %) | | | |"
