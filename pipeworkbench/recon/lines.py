@@ -19,6 +19,7 @@ from pipeworkbench.recon.edges import EdgeMap, as_grey
 from pipeworkbench.recon.match import edges_along_normals
 
 GROWTHS = 3  # times that segments may grow
+MOST_SHARED = 0.5  # of a line's points may be a longer line's, else it is the same
 CORRELATION = float(2 * np.sqrt(np.pi))  # sum of the autocorrelation of noise after Gaussian smoothing, in standard deviations
 
 
@@ -143,21 +144,17 @@ def fit_segments(edges: EdgeMap, ends: Array, interior: Interior | None = None, 
     position, normal = edges.position, edges.normal
     if interior is not None:
         position, normal = _without_distortion(position, normal, interior)
-    for _ in range(GROWTHS):
+    for growth in range(GROWTHS):
         segment, edge = _supporting(edges, ends, settings)
         lines = _fit(position, normal, edges, segment, edge, len(ends), settings)
         segment, edge = _unbroken(lines, position, settings)
         lines = _fit(position, normal, edges, segment, edge, len(ends), settings)
         ends = _grown(lines, edges, ends, settings)
-
-    # a point counts for the longest of the lines that it supports, so that doubles lose theirs
-    rank = np.argsort(np.argsort(-lines.length, kind="stable"))
-    order = np.lexsort((rank[lines.segment], lines.edge))
-    first = np.ones(len(order), bool)
-    first[1:] = lines.edge[order][1:] != lines.edge[order][:-1]
-    keep = order[first]
-    own = np.bincount(lines.segment[keep], minlength=len(ends))
-    good = (own >= settings.least_support * lines.length) & (own >= 0.5 * lines.support) & (lines.length >= settings.least_length)
+        if growth == 0:
+            # detectors find most lines several times: the sooner doubles go, the less there is to fit
+            ends = ends[(_owned(lines)[1] >= MOST_SHARED * lines.support) & (lines.support > 2)]
+    keep, own = _owned(lines)
+    good = (own >= settings.least_support * lines.length) & (own >= MOST_SHARED * lines.support) & (lines.length >= settings.least_length)
     segment, edge = lines.segment[keep], lines.edge[keep]
     kept = good[segment]
     lines = _fit(position, normal, edges, segment[kept], edge[kept], len(ends), settings)
@@ -200,6 +197,16 @@ def _supporting(edges: EdgeMap, ends: Array, settings: LineSettings) -> tuple[ND
     pairs = np.unique(segment[sample] * max(len(edges), 1) + edge)
     found = np.divmod(pairs, max(len(edges), 1))
     return found[0], found[1]
+
+
+def _owned(lines: LineSegments) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the supporting pairs that count and how many (k,) each line has: a point counts for the longest line it supports."""
+    rank = np.argsort(np.argsort(-lines.length, kind="stable"))
+    order = np.lexsort((rank[lines.segment], lines.edge))
+    first = np.ones(len(order), bool)
+    first[1:] = lines.edge[order][1:] != lines.edge[order][:-1]
+    keep = order[first]
+    return keep, np.bincount(lines.segment[keep], minlength=len(lines))
 
 
 def _unbroken(lines: LineSegments, position: Array, settings: LineSettings) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, spread
+from pipeworkbench.recon.texture import NODES, parabola
 from pipeworkbench.recon.views import View
 
-ALONG = (0.04, 0.96)  # of the extent; its ends may be another component's
+ALONG = np.array([0.04, 0.5, 0.96])  # of the extent; its ends may be another component's
 ACROSS = 0.8  # of the radius to each side; the limb itself is the edges' business
 BESIDE = ((1.15, 1.6), (1.2, 2.2))  # radii; near beside the limb, and further out
 LEAST_KNOWN = 0.5  # part of the samples that both images must contain
@@ -69,10 +70,10 @@ def surface_agreement(views: Sequence[View], cylinders: Cylinders, extents: Arra
     return _correlations(_surface(views, cylinders, extents, along, across))
 
 
-def _frame(views: Sequence[View], cylinders: Cylinders, extents: Array, along: int) -> tuple[Array, Array, Array]:
-    """Return points on the axes (k, along, 3), unit vectors across the axes and the sight (k, 3) and towards the cameras (k, 3)."""
+def _frame(views: Sequence[View], cylinders: Cylinders, extents: Array) -> tuple[Array, Array, Array]:
+    """Return points on the axes (k, 3, 3), unit vectors across the axes and the sight (k, 3) and towards the cameras (k, 3)."""
     centre = np.mean([view.camera.projection_centre for view in views], axis=0)
-    axis = cylinders.points[:, None] + spread(extents, np.linspace(*ALONG, along))[:, :, None] * cylinders.directions[:, None]
+    axis = cylinders.points[:, None] + spread(extents, ALONG)[:, :, None] * cylinders.directions[:, None]
     sight = cylinders.points + extents.mean(axis=1)[:, None] * cylinders.directions - centre
     sideways = np.cross(cylinders.directions, sight)
     sideways /= np.linalg.norm(sideways, axis=1, keepdims=True)
@@ -82,29 +83,32 @@ def _frame(views: Sequence[View], cylinders: Cylinders, extents: Array, along: i
 
 
 def _surface(views: Sequence[View], cylinders: Cylinders, extents: Array, along: int, across: int) -> NDArray[np.float32]:
-    axis, sideways, towards = _frame(views, cylinders, extents, along)
-    part = np.linspace(-ACROSS, ACROSS, across)
+    axis, sideways, towards = _frame(views, cylinders, extents)
+    part = ACROSS * NODES
     offset = part[:, None] * sideways[:, None] + np.sqrt(1 - part**2)[:, None] * towards[:, None]
-    return _grey(views, axis[:, :, None] + cylinders.radii[:, None, None, None] * offset[:, None])
+    return _grey(views, axis[:, :, None] + cylinders.radii[:, None, None, None] * offset[:, None], along, across)
 
 
 def _band(views: Sequence[View], cylinders: Cylinders, extents: Array, along: int, across: int, low: float, high: float) -> NDArray[np.float32]:
-    axis, sideways, _ = _frame(views, cylinders, extents, along)
-    offset = np.linspace(low, high, across)[:, None] * sideways[:, None]
-    return _grey(views, axis[:, :, None] + cylinders.radii[:, None, None, None] * offset[:, None])
+    axis, sideways, _ = _frame(views, cylinders, extents)
+    offset = ((low + high) / 2 + (high - low) / 2 * NODES)[:, None] * sideways[:, None]
+    return _grey(views, axis[:, :, None] + cylinders.radii[:, None, None, None] * offset[:, None], along, across)
 
 
-def _grey(views: Sequence[View], points: Array) -> NDArray[np.float32]:
-    """Return what the views show at points (k, along, across, 3): (views, k, along, across), NaN outside the images."""
+def _grey(views: Sequence[View], nodes: Array, along: int, across: int) -> NDArray[np.float32]:
+    """Return what the views show (views, k, along, across) between points (k, 3, 3, 3) along and across, NaN outside the images.
+
+    Only these points are projected: between them a parabola is exact enough.
+    """
     import cv2
 
-    count, along, across = points.shape[:3]
-    found = np.empty((len(views), count, along, across), np.float32)
+    found = np.empty((len(views), len(nodes), along, across), np.float32)
     for number, view in enumerate(views):
-        position = view.camera.project(points.reshape(-1, 3))
-        inside = view.camera.sees(position).reshape(count, along, across)
-        table = np.where(inside.reshape(-1, 1), position, -1).astype(np.float32).reshape(count, along * across, 2)
-        for first in range(0, count, ROWS):
+        corners = view.camera.project(nodes.reshape(-1, 3)).reshape(-1, 3, 3, 2)
+        position = np.einsum("ai,kijc,bj->kabc", parabola(along), corners, parabola(across), optimize=True)
+        inside = view.camera.sees(position.reshape(-1, 2)).reshape(position.shape[:3])
+        table = np.where(inside[..., None], position, -1).astype(np.float32).reshape(-1, along * across, 2)
+        for first in range(0, len(nodes), ROWS):
             rows = slice(first, first + ROWS)
             found[number, rows] = cv2.remap(view.smooth, table[rows], None, cv2.INTER_LINEAR).reshape(-1, along, across)
         found[number][~inside] = np.nan
