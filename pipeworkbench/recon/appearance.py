@@ -14,7 +14,7 @@ import numpy as np
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
-from pipeworkbench.recon.views import View
+from pipeworkbench.recon.views import View, brightness_at
 
 ALONG, ACROSS = 12, 15  # samples; the median along the pipe leaves brackets and stains out
 MARGIN = 0.08  # of the width at either side: the limb itself is the edges' business
@@ -28,16 +28,12 @@ def shading(view: View, cylinders: Cylinders, extents: Array) -> Array:
 
     ``extents`` (k, 2) are mm along the axes.
     """
-    import cv2
-
     along = spread(extents, np.linspace(0.05, 0.95, ALONG))
     sides, _ = outlines(view.camera, cylinders, along)
     weight = np.linspace(MARGIN, 1 - MARGIN, ACROSS)[:, None]
     where = sides[:, 0, :, None, :] * (1 - weight) + sides[:, 1, :, None, :] * weight
     seen = np.isfinite(where[..., 0])
-    flat = np.where(seen[..., None], where, -1).astype(np.float32).reshape(-1, ACROSS, 2)
-    grey = cv2.remap(view.smooth, flat, None, cv2.INTER_LINEAR).reshape(seen.shape)
-    grey = np.where(seen, grey, np.nan)
+    grey = brightness_at(view, where, seen)
     enough = seen.all(axis=2).mean(axis=1) >= LEAST_SEEN
     profile = np.full((len(cylinders), ACROSS), np.nan)
     profile[enough] = np.nanmedian(grey[enough], axis=1)

@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.edges import EdgeMap
-from pipeworkbench.recon.lines import LineSegments, LineSettings, hough_segments
+from pipeworkbench.recon.lines import INTERRUPTED, LineSegments, hough_segments
 from pipeworkbench.recon.picks import PipePick
 from pipeworkbench.recon.views import View
 
 REGION_PX = 500  # around the clicks: a pipe as wide as that is clicked at its edges
-SEGMENTS = LineSettings(least_length=25.0, least_support=0.35, largest_gap=12.0, hough_votes=25, hough_gap=12.0)
 NEAR_PX = 8.0  # from a click near an edge to that edge
 BESIDE = 0.25  # parts of its length that a segment may end before the click
 LEAST_OVERLAP = 0.3  # of what is seen of two edges; where less is shared, their lines are extended
@@ -63,7 +62,7 @@ def _segments_around(edges: EdgeMap, clicks: Array) -> LineSegments:
     low = np.maximum(np.floor(clicks.min(axis=0)).astype(int) - REGION_PX, 0)
     high = np.minimum(np.ceil(clicks.max(axis=0)).astype(int) + REGION_PX + 1, (width, height))
     part = _cropped(edges, low, high)
-    found = hough_segments(part, None, SEGMENTS)
+    found = hough_segments(part, None, INTERRUPTED)
     return replace(found, ends=found.ends + low, centre=found.centre + low)
 
 

@@ -10,7 +10,7 @@ edges, drawn onto them, and accepted greedily: a part of space belongs to one pi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
@@ -22,10 +22,10 @@ from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
 from pipeworkbench.recon.edge_lines import EdgeLineSettings, match_lines
 from pipeworkbench.recon.evidence import EvidenceSettings, evidence
-from pipeworkbench.recon.lines import LineSegments, LineSettings, hough_segments
+from pipeworkbench.recon.lines import INTERRUPTED, LineSettings, hough_segments
 from pipeworkbench.recon.picks import PipePick
 from pipeworkbench.recon.pipes import PipeCandidate, from_pick
-from pipeworkbench.recon.search import PickSettings
+from pipeworkbench.recon.search import PickSettings, joined
 from pipeworkbench.recon.second_edges import SecondEdgeSettings, cylinders_from_edges
 from pipeworkbench.recon.settle import drawn_onto_edges
 from pipeworkbench.recon.surface import Agreement, agreement, surface_agreement
@@ -60,9 +60,7 @@ class DetectSettings:
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
     diameter_range: tuple[float, float] = (15.0, 700.0)
-    segments: LineSettings = field(
-        default_factory=lambda: LineSettings(least_length=25.0, least_support=0.35, largest_gap=12.0, hough_votes=25, hough_gap=12.0)
-    )
+    segments: LineSettings = INTERRUPTED
     lines: EdgeLineSettings = field(default_factory=lambda: EdgeLineSettings(least_length=25.0, least_witnesses=0.45, steepest_deg=85.0))
     second_edges: SecondEdgeSettings = field(default_factory=SecondEdgeSettings)
     screened: int = 6000
@@ -104,8 +102,8 @@ def detect_cylinders(
     """
     settings = settings or DetectSettings()
     progress("finding lines")
-    with ThreadPoolExecutor(2) as threads:
-        segments = list(threads.map(lambda view: _segments_of(view, settings), views))
+    with ThreadPoolExecutor(WORKERS) as threads:
+        segments = list(threads.map(lambda view: hough_segments(view.edges, view.camera.interior, settings.segments), views))
     progress("matching lines")
     lines = match_lines(views, segments, settings.lines)
     common = [size for size in pipe_sizes() if size.series == 1 and settings.diameter_range[0] <= size.outer_diameter <= settings.diameter_range[1]]
@@ -165,17 +163,9 @@ def detect(
     ]
     if not candidates:
         return ()
-    cylinders = Cylinders(
-        np.array([c.solution.cylinder.point for c in candidates]),
-        np.array([c.solution.cylinder.direction for c in candidates]),
-        np.array([c.solution.cylinder.radius for c in candidates]),
-    )
-    extents = np.array([c.extent for c in candidates])
-    chosen: list[int] = []
-    for row in range(len(candidates)):
-        if not _in_the_way(cylinders, extents, row, chosen):
-            chosen.append(row)
-    return tuple(candidates[row] for row in chosen)
+    cylinders = joined([candidate.solution.cylinder.as_many() for candidate in candidates])
+    extents = np.array([candidate.extent for candidate in candidates])
+    return tuple(candidates[row] for row in _beside_each_other(cylinders, extents, range(len(candidates))))
 
 
 def _confirms(candidate: PipeCandidate, found: Detected, row: int) -> bool:
@@ -197,10 +187,6 @@ def _as_pick(views: Sequence[View], found: Detected, row: int) -> PipePick | Non
         return None
     edges = outline[camera][:, [seen[camera][0], seen[camera][-1]]]
     return PipePick(row, camera, edges, None)
-
-
-def _segments_of(view: View, settings: DetectSettings) -> LineSegments:
-    return hough_segments(view.edges, view.camera.interior, settings.segments)
 
 
 def _edge_evidence(views: Sequence[View], cylinders: Cylinders, extents: Array, settings: EvidenceSettings) -> Array:
@@ -261,11 +247,7 @@ def _accepted(views: Sequence[View], cylinders: Cylinders, extents: Array, setti
     good &= _is_pipe(images, settings)
     confidence = edges + settings.surface_weight * _log_ratio(images.surface)
     order = np.argsort(-confidence * np.sqrt(length), kind="stable")
-    chosen: list[int] = []
-    for row in order[good[order]]:
-        if not _in_the_way(cylinders, extents, int(row), chosen):
-            chosen.append(int(row))
-    rows = np.array(chosen, dtype=np.intp)
+    rows = np.array(_beside_each_other(cylinders, extents, order[good[order]]), dtype=np.intp)
     return Detected(cylinders[rows], extents[rows], tuple(pipe_sizes()[i] for i in size[rows]), confidence[rows])
 
 
@@ -284,6 +266,15 @@ def _sizes_of(diameters: Array, settings: DetectSettings) -> tuple[NDArray[np.in
     off = np.abs(diameters[:, None] / standard - 1) / tolerance
     best = off.argmin(axis=1)
     return best, off.min(axis=1) <= 1
+
+
+def _beside_each_other(cylinders: Cylinders, extents: Array, order: Iterable[int]) -> list[int]:
+    """Return the rows in their order, without those that are in the way of an earlier one."""
+    chosen: list[int] = []
+    for row in order:
+        if not _in_the_way(cylinders, extents, int(row), chosen):
+            chosen.append(int(row))
+    return chosen
 
 
 def _in_the_way(cylinders: Cylinders, extents: Array, row: int, chosen: Sequence[int]) -> bool:

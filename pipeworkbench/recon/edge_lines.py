@@ -33,8 +33,7 @@ class EdgeLineSettings:
     ``working_range`` of distances from the cameras; ``least_angle_deg`` between the planes, below which their line is not
     known; ``overlap`` of the segments along the line, in parts of the shorter; ``samples`` per line with
     which the witnesses are asked, ``witness_range`` to each side; ``least_witnesses`` the part of samples
-    that the best witness must confirm; ``steepest_deg`` between line and image plane; ``same_angle_deg`` and ``same_px`` within
-    which two lines are one.
+    that the best witness must confirm; ``steepest_deg`` between line and image plane.
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
@@ -45,8 +44,6 @@ class EdgeLineSettings:
     witness_range: float = 2.0
     least_witnesses: float = 0.55
     steepest_deg: float = 65.0
-    same_angle_deg: float = 1.0
-    same_px: float = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,17 +199,39 @@ def _on_planes(centre: Array, rays: Array, other_centre: Array, normals: Array) 
 
 def _confirmed(view: View, ends: Array, bright: Array, settings: EdgeLineSettings) -> Array:
     """Return which part (k,) of lines' samples in another image has an edge of the same polarity, -1 where it does not see them."""
-    part = (np.arange(settings.samples) + 0.5) / settings.samples
+    position, normal, _ = samples_in(view.camera, ends, bright, settings.samples)
+    hit = match(view.edges, position, normal, settings.witness_range, np.ones(len(position))).found.reshape(-1, settings.samples)
+    seen = np.isfinite(position[:, 0]).reshape(-1, settings.samples).sum(axis=1)
+    return np.where(seen >= settings.samples / 2, hit.sum(axis=1) / np.maximum(seen, 1), -1.0)
+
+
+def samples_in(camera: Camera, ends: Array, bright: Array, samples: int) -> tuple[Array, Array, Array]:
+    """Return evenly spaced samples of lines in an image, those of one line after those of the other.
+
+    Parameters
+    ----------
+    camera : Camera
+    ends : (k, 2, 3) array
+        In space, mm.
+    bright : (k, 3) array
+        Unit vectors towards the brighter side.
+    samples : int
+        Per line.
+
+    Returns
+    -------
+    position, normal : (k * samples, 2) arrays
+        Pixels, NaN outside the image; unit normals towards the brighter side.
+    scale : (k * samples,) array
+        Pixels along the normal per mm along ``bright``.
+    """
+    part = (np.arange(samples) + 0.5) / samples
     points = ends[:, :1] + part[:, None] * (ends[:, 1:] - ends[:, :1])
-    position, derivative = view.camera.project_with_derivative(points.reshape(-1, 3))
-    inside = view.camera.sees(position)
-    towards = np.einsum("nij,nj->ni", derivative, np.repeat(bright, settings.samples, axis=0))
-    tangent = np.einsum("nij,nj->ni", derivative, np.repeat(ends[:, 1] - ends[:, 0], settings.samples, axis=0))
+    position, derivative = camera.project_with_derivative(points.reshape(-1, 3))
+    position[~camera.sees(position)] = np.nan
+    towards = np.einsum("nij,nj->ni", derivative, np.repeat(bright, samples, axis=0))
+    tangent = np.einsum("nij,nj->ni", derivative, np.repeat(ends[:, 1] - ends[:, 0], samples, axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
         normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.linalg.norm(tangent, axis=1, keepdims=True)
-    normal *= np.where(np.einsum("ni,ni->n", normal, towards) < 0, -1.0, 1.0)[:, None]
-    position[~inside] = np.nan
-    hit = match(view.edges, position, normal, settings.witness_range, np.ones(len(position))).found.reshape(-1, settings.samples)
-    inside = inside.reshape(-1, settings.samples)
-    seen = inside.sum(axis=1)
-    return np.where(seen >= settings.samples / 2, hit.sum(axis=1) / np.maximum(seen, 1), -1.0)
+    scale = np.einsum("ni,ni->n", towards, normal)
+    return position, normal * np.where(scale < 0, -1.0, 1.0)[:, None], np.abs(scale)

@@ -46,6 +46,10 @@ class LineSettings:
     hough_angle_deg: float = 0.5
 
 
+# for pipes' edges, which brackets, stains and shade interrupt
+INTERRUPTED = LineSettings(least_length=25.0, least_support=0.35, largest_gap=12.0, hough_votes=25, hough_gap=12.0)
+
+
 @dataclass(frozen=True, eq=False)
 class LineSegments:
     """Straight segments, k in number, the longest first.

@@ -15,7 +15,7 @@ import numpy as np
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders
-from pipeworkbench.recon.edge_lines import EdgeLines
+from pipeworkbench.recon.edge_lines import EdgeLines, samples_in
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.views import View
 
@@ -86,17 +86,7 @@ def cylinders_from_edges(
 def _hits(view: View, lines: EdgeLines, diameters: Array, settings: SecondEdgeSettings) -> tuple[Array, Array]:
     """Return which part (lines, 2, d) of samples has a second edge in a view, on the brighter side and the other, and whether it is seen."""
     samples = settings.samples
-    part = (np.arange(samples) + 0.5) / samples
-    points = (lines.ends[:, :1] + part[:, None] * (lines.ends[:, 1:] - lines.ends[:, :1])).reshape(-1, 3)
-    position, derivative = view.camera.project_with_derivative(points)
-    position[~view.camera.sees(position)] = np.nan
-    bright = np.einsum("nij,nj->ni", derivative, np.repeat(lines.bright, samples, axis=0))
-    tangent = np.einsum("nij,nj->ni", derivative, np.repeat(lines.ends[:, 1] - lines.ends[:, 0], samples, axis=0))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.linalg.norm(tangent, axis=1, keepdims=True)
-    scale = np.einsum("ni,ni->n", bright, normal)
-    normal *= np.where(scale < 0, -1.0, 1.0)[:, None]
-    scale = np.abs(scale)
+    position, normal, scale = samples_in(view.camera, lines.ends, lines.bright, samples)
     in_image = np.isfinite(position[:, 0]).reshape(-1, samples)
     middle = np.where(in_image, scale.reshape(-1, samples), 0).sum(axis=1) / np.maximum(in_image.sum(axis=1), 1)
     hits, known = np.zeros((len(lines), 2, len(diameters))), np.zeros((len(lines), 2, len(diameters)))

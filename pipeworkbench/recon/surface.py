@@ -19,14 +19,13 @@ from numpy.typing import NDArray
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, spread
 from pipeworkbench.recon.texture import NODES, parabola
-from pipeworkbench.recon.views import View
+from pipeworkbench.recon.views import View, brightness_at
 
 ALONG = np.array([0.04, 0.5, 0.96])  # of the extent; its ends may be another component's
 ACROSS = 0.8  # of the radius to each side; the limb itself is the edges' business
 BESIDE = ((1.15, 1.6), (1.2, 2.2))  # radii; near beside the limb, and further out
 LEAST_KNOWN = 0.5  # part of the samples that both images must contain
 LEAST_SPREAD = 1e-6  # grey values; keeps blank images from a division by zero
-ROWS = 30000  # remap takes no more at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,18 +99,11 @@ def _grey(views: Sequence[View], nodes: Array, along: int, across: int) -> NDArr
 
     Only these points are projected: between them a parabola is exact enough.
     """
-    import cv2
-
     found = np.empty((len(views), len(nodes), along, across), np.float32)
     for number, view in enumerate(views):
         corners = view.camera.project(nodes.reshape(-1, 3)).reshape(-1, 3, 3, 2)
         position = np.einsum("ai,kijc,bj->kabc", parabola(along), corners, parabola(across), optimize=True)
-        inside = view.camera.sees(position.reshape(-1, 2)).reshape(position.shape[:3])
-        table = np.where(inside[..., None], position, -1).astype(np.float32).reshape(-1, along * across, 2)
-        for first in range(0, len(nodes), ROWS):
-            rows = slice(first, first + ROWS)
-            found[number, rows] = cv2.remap(view.smooth, table[rows], None, cv2.INTER_LINEAR).reshape(-1, along, across)
-        found[number][~inside] = np.nan
+        found[number] = brightness_at(view, position, view.camera.sees(position.reshape(-1, 2)).reshape(position.shape[:3]))
     return found
 
 

@@ -13,10 +13,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, spread
-from pipeworkbench.recon.views import View
+from pipeworkbench.recon.views import View, brightness_at
 
 NODES = np.array([-1.0, 0.0, 1.0])  # where a surface is projected, along and across; between them a parabola is exact to 0.2 px
 MARGIN = 0.97  # of the length: the ends of the clicked part may lie on a seam
@@ -102,30 +103,24 @@ def _control_points(cylinders: Cylinders, extents: Array, origin: Array, setting
     return np.asarray(axis[:, :, None] + cylinders.radii[:, None, None, None] * outward[:, None])
 
 
-def _patches(view: View, surface: Array, settings: TextureSettings) -> tuple[Array, Array]:
+def _patches(view: View, surface: Array, settings: TextureSettings) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return the brightness of patches (k, p, s, q, t) about a straight line along the axis, and its norm (k, p, q).
 
     Subtracting the line leaves out the shading across, which moves with the camera, also where an axis is
     a little askew.
     """
-    import cv2
-
     nodes = view.camera.project(surface.reshape(-1, 3)).reshape(-1, 3, 3, 2)
     where = np.einsum("ai,kijc,bj->kabc", parabola(settings.along), nodes, parabola(settings.across), optimize=True)
     # a sample that is not in the image makes its patch unknown
     inside = view.camera.sees(where.reshape(-1, 2)).reshape(where.shape[:3])
-    flat = np.where(inside[..., None], where, 0).astype(np.float32).reshape(-1, settings.across, 2)
     rows, columns = settings.patches
-    parts = [
-        cv2.remap(view.smooth, flat[first : first + 32000], None, cv2.INTER_LINEAR) for first in range(0, len(flat), 32000)
-    ]  # OpenCV takes no more than 32767 rows
-    grey = np.where(inside, np.concatenate(parts).reshape(inside.shape), np.nan)
+    grey = brightness_at(view, where, inside)
     patches = grey.reshape(len(surface), rows, settings.along // rows, columns, settings.across // columns)
     line = np.linspace(-1, 1, patches.shape[2])
     line /= np.linalg.norm(line)
     patches -= patches.mean(axis=2, keepdims=True)
     patches -= np.einsum("kpsqt,s->kpqt", patches, line)[:, :, None] * line[:, None, None]
-    return patches, np.sqrt(np.einsum("kpsqt,kpsqt->kpq", patches, patches))
+    return patches, np.asarray(np.sqrt(np.einsum("kpsqt,kpsqt->kpq", patches, patches)))
 
 
 def parabola(count: int) -> Array:
