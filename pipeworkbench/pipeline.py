@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The domain: pipes, elbows, flanges and the joints between them, and their JSON file.
+"""The domain: pipes, elbows, flanges, tees, reducers, caps and the joints between them, and their JSON file.
 
 Lengths are millimetres in the frame the pipeline names. Frozen dataclasses; the file format is
 ``pipeworkbench-pipeline/1`` and keys that this version does not know survive a round trip.
@@ -20,12 +20,22 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.files import check, key_path, read_json, written_whole
 
 SCHEMA = "pipeworkbench-pipeline/1"
+BLIND_FLANGE = "05"  # of EN 1092-1
 
 Finite = Annotated[float, Predicate(math.isfinite)]
 Positive = Annotated[float, Gt(0), Predicate(math.isfinite)]
 NotNegative = Annotated[float, Ge(0), Predicate(math.isfinite)]
 Vector = tuple[Finite, Finite, Finite]
 Matrix = tuple[tuple[Finite, Finite, Finite, Finite], ...]
+
+
+@dataclass(frozen=True)
+class Port:
+    """Where another component can be joined: the centre (mm), the unit direction out of the component and the outside diameter (mm)."""
+
+    point: Vector
+    direction: Vector
+    diameter: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +63,11 @@ class Component:
     verified: Literal[0, 1, 2] | None = None
     extra: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """The component's ends in the order of a joint's port numbers."""
+        raise NotImplementedError
+
 
 @dataclass(frozen=True, kw_only=True)
 class Pipe(Component):
@@ -77,6 +92,11 @@ class Pipe(Component):
         """Distance from start to end in mm."""
         return math.dist(self.start, self.end)
 
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Start and end."""
+        return _port(self.end, self.start, self.outer_diameter), _port(self.start, self.end, self.outer_diameter)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Elbow(Component):
@@ -90,6 +110,11 @@ class Elbow(Component):
     angle_deg: Positive
     bend_radius: Positive
     bend_type: Literal["2D", "3D", "5D"] | None = None
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Start and end."""
+        return _port(self.intersection, self.start, self.outer_diameter), _port(self.intersection, self.end, self.outer_diameter)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,15 +137,92 @@ class Flange(Component):
     neck_diameter: Positive | None = None
     equivalents: tuple[dict[str, Any], ...] = ()
 
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """The sealing face and the weld end, which a blind flange has not."""
+        face = Port(self.face, self.axis, self.D)
+        if self.flange_type == BLIND_FLANGE:
+            return (face,)
+        a, b, c = self.axis
+        x, y, z = self.face
+        weld_end = (x - self.length * a, y - self.length * b, z - self.length * c)
+        return face, Port(weld_end, (-a, -b, -c), self.outer_diameter)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tee(Component):
+    """A branch on a run: the run's axis from ``start`` to ``end``, the branch's from ``intersection`` on it to ``branch_end`` (mm).
+
+    ``outer_diameter`` is the run's. ``tee_type`` is "tee" for a fitting of EN 10253 and "set-on" where the branch
+    is welded onto a pipe that runs through; then start and end are where the seam's influence ends.
+    """
+
+    kind: ClassVar[str] = "tee"
+
+    start: Vector
+    end: Vector
+    intersection: Vector
+    branch_end: Vector
+    branch_diameter: Positive
+    tee_type: Literal["tee", "set-on"] = "tee"
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Start and end of the run, end of the branch."""
+        return (
+            _port(self.end, self.start, self.outer_diameter),
+            _port(self.start, self.end, self.outer_diameter),
+            _port(self.intersection, self.branch_end, self.branch_diameter),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reducer(Component):
+    """A cone between pipes of two diameters: ``outer_diameter`` at ``start``, ``end_diameter``, the smaller, at ``end`` (mm).
+
+    ``axis`` is the unit direction of both pipes, from start to end; an eccentric reducer's ends are offset from each other across it.
+    """
+
+    kind: ClassVar[str] = "reducer"
+
+    start: Vector
+    end: Vector
+    axis: Vector
+    end_diameter: Positive
+    reducer_type: Literal["concentric", "eccentric"] = "concentric"
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """The wide end and the narrow end."""
+        a, b, c = self.axis
+        return Port(self.start, (-a, -b, -c), self.outer_diameter), Port(self.end, self.axis, self.end_diameter)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cap(Component):
+    """A dished cap on a pipe's end: the weld end's centre ``start``, the unit direction ``axis`` out of the pipe, the ``length`` (mm)."""
+
+    kind: ClassVar[str] = "cap"
+
+    start: Vector
+    axis: Vector
+    length: Positive
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """The weld end."""
+        a, b, c = self.axis
+        return (Port(self.start, (-a, -b, -c), self.outer_diameter),)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """Port ``a_port`` of component ``a`` meets port ``b_port`` of component ``b``."""
+    """Port ``a_port`` of component ``a`` meets port ``b_port`` of component ``b``; 2 is a tee's branch."""
 
     a: str
-    a_port: Literal[0, 1]
+    a_port: Literal[0, 1, 2]
     b: str
-    b_port: Literal[0, 1]
+    b_port: Literal[0, 1, 2]
     extra: dict[str, Any] = field(default_factory=dict)
 
 
@@ -136,8 +238,8 @@ class StationPose:
             raise ValueError("frame_from_level must have 4 rows")
 
 
-AnyComponent = Pipe | Elbow | Flange
-_KINDS: dict[str, type[AnyComponent]] = {kind.kind: kind for kind in (Pipe, Elbow, Flange)}
+AnyComponent = Pipe | Elbow | Flange | Tee | Reducer | Cap
+_KINDS: dict[str, type[AnyComponent]] = {kind.kind: kind for kind in (Pipe, Elbow, Flange, Tee, Reducer, Cap)}
 _PIPELINE_KEYS = {"schema", "length_unit", "frame", "components", "joints", "stations", "sigma0"}
 _IDENTITY: Matrix = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
@@ -220,6 +322,13 @@ class Pipeline:
         )
 
 
+def _port(inside: Vector, point: Vector, diameter: float) -> Port:
+    """Return the port at ``point`` that looks away from another point of the component's axis."""
+    length = math.dist(inside, point) or math.nan
+    a, b, c = ((q - p) / length for p, q in zip(inside, point, strict=True))
+    return Port(point, (a, b, c), diameter)
+
+
 def _fields(item: Any) -> dict[str, Any]:
     """Return a dataclass as a dictionary without what is not known and with the unknown keys in place."""
     data = {f.name: getattr(item, f.name) for f in dataclasses.fields(item) if f.name != "extra"}
@@ -262,8 +371,11 @@ def _refuse_repeated_ids(components: tuple[AnyComponent, ...], source: object) -
 
 
 def _refuse_dangling_joints(components: tuple[AnyComponent, ...], joints: tuple[Joint, ...], source: object) -> None:
-    ids = {component.id for component in components}
+    ports = {component.id: len(component.ports) for component in components}
     for index, joint in enumerate(joints):
-        for key in ("a", "b"):
-            if getattr(joint, key) not in ids:
-                raise InputError(source, f"joints[{index}].{key}", f"no component '{getattr(joint, key)}'", "name an existing component")
+        for key, port_key in (("a", "a_port"), ("b", "b_port")):
+            name, port = getattr(joint, key), getattr(joint, port_key)
+            if name not in ports:
+                raise InputError(source, f"joints[{index}].{key}", f"no component '{name}'", "name an existing component")
+            if port >= ports[name]:
+                raise InputError(source, f"joints[{index}].{port_key}", f"'{name}' has no port {port}", f"use 0 to {ports[name] - 1}")

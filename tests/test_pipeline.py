@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.pipeline import SCHEMA, Elbow, Flange, Pipe, Pipeline
+from pipeworkbench.pipeline import SCHEMA, Cap, Elbow, Flange, Pipe, Pipeline, Reducer, Tee
 
 PIPE = {"kind": "pipe", "id": "P1", "start": [0.0, 3000.0, 0.0], "end": [300.0, 3400.0, 0.0], "outer_diameter": 48.3, "wall_thickness": 2.6, "dn": 40}
 ELBOW = {
@@ -37,6 +37,29 @@ FLANGE = {
     "outer_diameter": 48.3,
     "equivalents": [{"standard": "DIN 2633", "flange_type": "11", "pn": 16}],
 }
+TEE = {
+    "kind": "tee",
+    "id": "T1",
+    "start": [0.0, 0.0, 0.0],
+    "end": [0.0, 0.0, 152.0],
+    "intersection": [0.0, 0.0, 76.0],
+    "branch_end": [70.0, 0.0, 76.0],
+    "branch_diameter": 33.7,
+    "tee_type": "tee",
+    "outer_diameter": 60.3,
+}
+REDUCER = {
+    "kind": "reducer",
+    "id": "R1",
+    "start": [0.0, 0.0, 0.0],
+    "end": [0.0, 6.0, 76.0],
+    "axis": [0.0, 0.0, 1.0],
+    "end_diameter": 48.3,
+    "reducer_type": "eccentric",
+    "outer_diameter": 60.3,
+}
+CAP = {"kind": "cap", "id": "C1", "start": [0.0, 0.0, 0.0], "axis": [0.0, 0.0, 1.0], "length": 38.0, "outer_diameter": 60.3}
+KINDS = [Pipe, Elbow, Flange, Tee, Reducer, Cap]
 IDENTITY = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
 
 
@@ -47,7 +70,7 @@ def complete() -> dict:
             "schema": SCHEMA,
             "length_unit": "mm",
             "frame": "A",
-            "components": [PIPE, ELBOW, FLANGE],
+            "components": [PIPE, ELBOW, FLANGE, TEE, REDUCER, CAP],
             "joints": [{"a": "P1", "a_port": 1, "b": "E1", "b_port": 0}],
             "stations": {"A": {"frame_from_level": IDENTITY}},
             "sigma0": 0.12,
@@ -73,7 +96,7 @@ def test_file_with_everything_survives_reading_and_writing(tmp_path):
     source, copy_ = tmp_path / "a.json", tmp_path / "b.json"
     source.write_text(json.dumps(complete()), encoding="utf-8")
     pipeline = Pipeline.read(source)
-    assert [type(c) for c in pipeline.components] == [Pipe, Elbow, Flange]
+    assert [type(c) for c in pipeline.components] == KINDS
     pipeline.write(copy_)
     assert json.loads(copy_.read_text(encoding="utf-8")) == complete()
     assert Pipeline.read(copy_) == pipeline
@@ -93,6 +116,26 @@ def test_unknown_key_kind_of_a_joint_survives():
     data = complete()
     data["joints"][0]["kind"] = "weld"
     assert Pipeline.from_dict(data).to_dict()["joints"][0].get("kind") == "weld"
+
+
+def test_ports_lie_at_the_ends_and_look_outwards():
+    pipeline = Pipeline.from_dict(complete())
+    assert [len(component.ports) for component in pipeline.components] == [2, 2, 2, 3, 2, 1]
+    for component in pipeline.components:
+        middle = [sum(x) / len(component.ports) for x in zip(*(port.point for port in component.ports), strict=True)]
+        for port in component.ports:
+            assert math.hypot(*port.direction) == pytest.approx(1)
+            if len(component.ports) > 1:
+                assert sum((a - b) * c for a, b, c in zip(port.point, middle, port.direction, strict=True)) > 0
+    flange = pipeline.components[2]
+    assert flange.ports[1].point == pytest.approx((45.0, 0.0, 0.0))
+    assert Pipeline.from_dict(complete() | {"components": [FLANGE | {"flange_type": "05"}], "joints": []}).components[0].ports == flange.ports[:1]
+
+
+def test_a_branch_is_a_tees_third_port():
+    data = complete()
+    data["joints"] = [{"a": "P1", "a_port": 0, "b": "T1", "b_port": 2}]
+    assert Pipeline.from_dict(data).joints[0].b_port == 2
 
 
 def test_nothing_but_the_frame_is_needed():

@@ -2,7 +2,8 @@
 """Components as simple surfaces, in arrays: what a camera sees of them and what hides what.
 
 A pipe is a frustum (with equal radii), an elbow a part of a torus, a flange two frustums one behind the
-other: plate and neck. Ends are closed with discs: pipework is opaque.
+other: plate and neck; a tee two pipes, a reducer a frustum, a cap a row of them on its ellipse. Ends are
+closed with discs: pipework is opaque.
 """
 
 from __future__ import annotations
@@ -15,10 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.pipeline import AnyComponent, Elbow, Pipe
+from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
 from pipeworkbench.recon.camera import Array
 
 STRAIGHT_DEG = 1e-3  # a bend by less is not a torus
+DISH = 0.25  # height over diameter of an ellipsoidal head with axes 2 : 1, as caps have it (EN 10253-2)
+DISH_STEPS = 6  # frustums that stand for it: off by less than 1 % of the radius
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,62 +106,87 @@ def shapes_of(components: Sequence[AnyComponent]) -> Shapes:
     InputError
         Where an elbow's ends, intersection and bend radius do not belong together.
     """
-    frustums: list[tuple[object, ...]] = []
-    tori: list[tuple[object, ...]] = []
-    discs: list[tuple[object, ...]] = []
-    edges: list[tuple[object, ...]] = []
-    part, edge_part = [], []
+    rows = _Rows()
     for owner, component in enumerate(components):
-        if isinstance(component, Pipe):
-            start, axis, length = _axis_of(component)
-            radius = component.outer_diameter / 2
-            frustums.append((start, axis, length, (radius, radius), owner))
-            part.append("pipe")
-            discs += [(start, axis, radius, owner), (start + length * axis, axis, radius, owner)]
-        elif isinstance(component, Elbow):
-            torus = _torus_of(component)
-            centre, axis, first, angle, bend_radius, tube_radius = torus
-            tori.append((*torus, owner))
-            second = np.cross(axis, first)
-            for turn in (0.0, angle):
-                outwards = np.cos(turn) * first + np.sin(turn) * second
-                discs.append((centre + bend_radius * outwards, np.cross(axis, outwards), tube_radius, owner))
-        else:
-            face, back, axis = np.array(component.face, float), component.C, -_unit(component.axis)
-            rim, pipe = component.D / 2, component.outer_diameter / 2
-            frustums.append((face, axis, back, (rim, rim), owner))
-            part.append("rim")
-            for along, name in ((0.0, "face"), (back, "back")):
-                circle = (face + along * axis, axis, rim, owner)
-                discs.append(circle)
-                edges.append(circle)
-                edge_part.append(name)
-            neck_length = component.length - back
-            if neck_length > 0:
-                root = min((component.neck_diameter or component.outer_diameter) / 2, rim)
-                frustums.append((face + back * axis, axis, neck_length, (root, pipe), owner))
-                part.append("neck")
-                discs.append((face + component.length * axis, axis, pipe, owner))
+        match component:
+            case Pipe():
+                rows.add_frustum(owner, "pipe", component.start, component.end, component.outer_diameter, component.outer_diameter)
+            case Elbow():
+                rows.add_torus(owner, component)
+            case Flange():
+                rows.add_flange(owner, component)
+            case Tee():
+                rows.add_frustum(owner, "pipe", component.start, component.end, component.outer_diameter, component.outer_diameter)
+                rows.add_frustum(owner, "pipe", component.intersection, component.branch_end, component.branch_diameter, component.branch_diameter)
+            case Reducer():
+                rows.add_frustum(owner, "cone", component.start, component.end, component.outer_diameter, component.end_diameter)
+            case Cap():
+                rows.add_cap(owner, component)
     return Shapes(
-        Frustums(*_columns(frustums, (3, 3, 0, 2, 0))),
-        tuple(part),
-        Tori(*_columns(tori, (3, 3, 3, 0, 0, 0, 0))),
-        Circles(*_columns(discs, (3, 3, 0, 0))),
-        Circles(*_columns(edges, (3, 3, 0, 0))),
-        tuple(edge_part),
+        Frustums(*_columns(rows.frustums, (3, 3, 0, 2, 0))),
+        tuple(rows.part),
+        Tori(*_columns(rows.tori, (3, 3, 3, 0, 0, 0, 0))),
+        Circles(*_columns(rows.discs, (3, 3, 0, 0))),
+        Circles(*_columns(rows.edges, (3, 3, 0, 0))),
+        tuple(rows.edge_part),
         len(components),
     )
+
+
+class _Rows:
+    """The surfaces as lists of rows while they are collected."""
+
+    def __init__(self) -> None:
+        self.frustums: list[tuple[object, ...]] = []
+        self.tori: list[tuple[object, ...]] = []
+        self.discs: list[tuple[object, ...]] = []
+        self.edges: list[tuple[object, ...]] = []
+        self.part: list[str] = []
+        self.edge_part: list[str] = []
+
+    def add_frustum(self, owner: int, part: str, start: Sequence[float], end: Sequence[float], diameter: float, end_diameter: float) -> None:
+        first, last = np.array(start, float), np.array(end, float)
+        length = float(np.linalg.norm(last - first))
+        axis = (last - first) / length
+        self.frustums.append((first, axis, length, (diameter / 2, end_diameter / 2), owner))
+        self.part.append(part)
+        self.discs += [(first, axis, diameter / 2, owner), (last, axis, end_diameter / 2, owner)]
+
+    def add_torus(self, owner: int, elbow: Elbow) -> None:
+        torus = _torus_of(elbow)
+        centre, axis, first, angle, bend_radius, tube_radius = torus
+        self.tori.append((*torus, owner))
+        second = np.cross(axis, first)
+        for turn in (0.0, angle):
+            outwards = np.cos(turn) * first + np.sin(turn) * second
+            self.discs.append((centre + bend_radius * outwards, np.cross(axis, outwards), tube_radius, owner))
+
+    def add_flange(self, owner: int, flange: Flange) -> None:
+        face, axis = np.array(flange.face, float), -_unit(flange.axis)
+        back = face + flange.C * axis
+        self.add_frustum(owner, "rim", tuple(face), tuple(back), flange.D, flange.D)
+        for centre, name in ((face, "face"), (back, "back")):
+            self.edges.append((centre, axis, flange.D / 2, owner))
+            self.edge_part.append(name)
+        if flange.length > flange.C:
+            root = min(flange.neck_diameter or flange.outer_diameter, flange.D)
+            self.add_frustum(owner, "neck", tuple(back), tuple(face + flange.length * axis), root, flange.outer_diameter)
+
+    def add_cap(self, owner: int, cap: Cap) -> None:
+        start, axis, diameter = np.array(cap.start, float), _unit(cap.axis), cap.outer_diameter
+        dish = min(DISH * diameter, cap.length)
+        if cap.length > dish:
+            self.add_frustum(owner, "pipe", tuple(start), tuple(start + (cap.length - dish) * axis), diameter, diameter)
+        turn = np.linspace(0, np.pi / 2, DISH_STEPS + 1)
+        along, width = cap.length - dish * (1 - np.sin(turn)), diameter * np.cos(turn)
+        for step in range(DISH_STEPS):
+            here, there = tuple(start + along[step] * axis), tuple(start + along[step + 1] * axis)
+            self.add_frustum(owner, "cap", here, there, float(width[step]), float(width[step + 1]))
 
 
 def _unit(vector: Sequence[float]) -> Array:
     array = np.array(vector, float)
     return array / np.linalg.norm(array)
-
-
-def _axis_of(pipe: Pipe) -> tuple[Array, Array, float]:
-    start, end = np.array(pipe.start, float), np.array(pipe.end, float)
-    length = float(np.linalg.norm(end - start))
-    return start, (end - start) / length, length
 
 
 def _torus_of(elbow: Elbow) -> tuple[Array, Array, Array, float, float, float]:
