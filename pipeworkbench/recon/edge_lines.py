@@ -125,13 +125,16 @@ def _distinct(views: Sequence[View], lines: EdgeLines) -> NDArray[np.intp]:
     return order[np.sort(first)]
 
 
-def _planes_of(camera: Camera, lines: LineSegments, settings: EdgeLineSettings) -> _Planes:
+def segment_rays(camera: Camera, ends: Array) -> Array:
+    """Return unit vectors (k, 2, 3), in the station's frame, to the ends (k, 2, 2) of segments in pixels without distortion."""
     interior = camera.interior
-    principal_point = interior.pixels(np.zeros((1, 2)))
-    long_enough = lines.length >= settings.least_length
-    ideal = (lines.ends[long_enough].reshape(-1, 2) - principal_point) / interior.pixels_per_radian
+    ideal = (ends.reshape(-1, 2) - interior.pixels(np.zeros((1, 2)))) / interior.pixels_per_radian
     rays = np.column_stack([ideal, np.ones(len(ideal))]) @ camera.rotation
-    rays = (rays / np.linalg.norm(rays, axis=1, keepdims=True)).reshape(-1, 2, 3)
+    return (rays / np.linalg.norm(rays, axis=1, keepdims=True)).reshape(-1, 2, 3)
+
+
+def _planes_of(camera: Camera, lines: LineSegments, settings: EdgeLineSettings) -> _Planes:
+    rays = segment_rays(camera, lines.ends[lines.length >= settings.least_length])
     normal = np.cross(rays[:, 0], rays[:, 1])
     # the brighter side is on the right of the direction: with u right, v down and z forward that is z x direction
     return _Planes(camera.projection_centre, rays, normal / np.linalg.norm(normal, axis=1, keepdims=True))

@@ -11,26 +11,11 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from measured import DN40
 
 from pipeworkbench.exports.ifc import ifc_model, write_ifc
 from pipeworkbench.pipeline import Pipe, Pipeline
 
-DN40 = Pipe(
-    id="A-P00",
-    start=(100.0, 3600.0, -50.0),
-    end=(400.0, 3600.0, 350.0),
-    outer_diameter=48.3,
-    wall_thickness=2.6,
-    dn=40,
-    standard="EN 10220",
-    pick=0,
-    station="A",
-    quality=0.21,
-    sigma_position=(0.1, 0.2, 0.3),
-    sigma_direction_deg=0.02,
-    loa="LOA50",
-    verified=2,
-)
 UNKNOWN_WALL = Pipe(id="A-P01", start=(0.0, 4000.0, 0.0), end=(0.0, 4000.0, -700.0), outer_diameter=95.0)
 PIPELINE = Pipeline.of_station("A", (DN40, UNKNOWN_WALL))
 
@@ -165,7 +150,7 @@ def test_measurement_and_dimensions_are_properties(model):
     assert dimensions["OuterDiameter"] == pytest.approx(48.3)
     assert dimensions["InnerDiameter"] == pytest.approx(48.3 - 2 * 2.6)
     assert dimensions["Length"] == pytest.approx(500.0)
-    assert [measurement[f"Sigma{axis}"] for axis in "XYZ"] == pytest.approx([0.1, 0.2, 0.3])
+    assert [measurement[f"Sigma{axis}"] for axis in "XYZ"] == pytest.approx(list(DN40.sigma_position))
     assert measurement["Standard"] == "EN 10220"
     assert measurement["VerifiedSources"] == 2
 

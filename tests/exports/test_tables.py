@@ -4,27 +4,11 @@
 import csv
 
 import pytest
+from measured import DN40
 
 from pipeworkbench.exports.tables import TERMINAL_COLUMNS, terminal_row, write_csv
 from pipeworkbench.pipeline import Pipe, Pipeline
 
-MEASURED = Pipe(
-    id="A-P00",
-    start=(100.0, 3600.0, -50.0),
-    end=(400.0, 3600.0, 350.0),
-    outer_diameter=48.3,
-    wall_thickness=2.6,
-    dn=40,
-    standard="EN 10220",
-    pick=0,
-    station="A",
-    quality=0.2134,
-    sigma_position=(0.02, 0.12, 0.03),
-    sigma_direction_deg=0.015,
-    sigma_outer_diameter=0.11,
-    loa="LOA50",
-    verified=2,
-)
 UNVERIFIED = Pipe(
     id="A-P01", start=(0.0, 0.0, 0.0), end=(0.0, 0.0, 80.0), outer_diameter=10.2, dn=6, wall_thickness=1.6, verified=0, approximate=True
 )
@@ -34,7 +18,7 @@ BARE = Pipe(id='odd, "name"', start=(0.0, 0.0, 0.0), end=(12.5, 0.0, 0.0), outer
 @pytest.fixture
 def rows(tmp_path):
     path = tmp_path / "pipes.csv"
-    write_csv(Pipeline.of_station("A", (MEASURED, UNVERIFIED, BARE)), path)
+    write_csv(Pipeline.of_station("A", (DN40, UNVERIFIED, BARE)), path)
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
@@ -68,7 +52,7 @@ def test_unverified_dimensions_are_marked(rows):
 
 
 def test_verified_dimensions_are_not_marked():
-    assert dict(zip(TERMINAL_COLUMNS, terminal_row(MEASURED), strict=True))["remarks"] == ""
+    assert dict(zip(TERMINAL_COLUMNS, terminal_row(DN40), strict=True))["remarks"] == ""
 
 
 def test_what_is_not_known_is_left_empty(rows):
@@ -77,7 +61,7 @@ def test_what_is_not_known_is_left_empty(rows):
 
 
 def test_terminal_row_has_the_rounded_figures():
-    row = dict(zip(TERMINAL_COLUMNS, terminal_row(MEASURED), strict=True))
+    row = dict(zip(TERMINAL_COLUMNS, terminal_row(DN40), strict=True))
     assert (row["pick"], row["DN"], row["outside diameter"], row["length"]) == ("0", "40", "48.3 mm", "500 mm")
     assert row["quality"] == "0.21 px"
     assert row["sigma"] == "0.13 mm"  # the root of 0.02^2 + 0.12^2 + 0.03^2

@@ -4,7 +4,7 @@
 import functools
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
@@ -58,6 +58,9 @@ def pipe(diameter=114.3, tilt_deg=(10.0, 15.0), length=700.0, centre=TARGET):
     roll, depth = np.radians(tilt_deg)
     direction = np.array([np.sin(roll) * np.cos(depth), np.sin(depth), np.cos(roll) * np.cos(depth)])
     return TruePipe(np.asarray(centre) - direction * length / 2, np.asarray(centre) + direction * length / 2, diameter)
+
+
+DN100 = pipe()
 
 
 def cameras(count=3):
@@ -116,6 +119,19 @@ def views(pipes: Sequence[TruePipe], count=3, seed=0):
         for index, (camera, path) in enumerate(zip(made.cameras, made.images, strict=True)):
             cv2.imwrite(str(path), photograph(camera, pipes, seed + index))
         return views_of(made)
+
+
+@functools.cache
+def views_of_dn100():
+    """Return the views of a station that looks at :data:`DN100`; made once for all tests."""
+    return views([DN100], seed=20)
+
+
+@functools.cache
+def views_without_edges():
+    """Return the views of three cameras in whose pictures nothing is."""
+    (one,) = views([], 1)
+    return tuple(replace(one, camera=camera) for camera in cameras())
 
 
 def true_edges(camera: Camera, one: TruePipe, part=0.6):

@@ -5,28 +5,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from synthetic import TARGET, cameras, pipe, views
+from synthetic import DN100, TARGET, pipe, views, views_of_dn100, views_without_edges
 
 from pipeworkbench.recon.cylinder import edge_lines
 from pipeworkbench.recon.edge_lines import EdgeLineSettings, match_lines
 from pipeworkbench.recon.lines import LineSegments, hough_segments
 
-TRUTH = pipe(114.3, (10.0, 15.0))
+TRUTH = DN100
 RADIUS = TRUTH.diameter / 2
 LEVEL = pipe(114.3, (90.0, 0.0))  # along the base of the first two cameras
 HALF = 250.0  # mm of the axis to each side in exact segments
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def seen():
-    return views([TRUTH], seed=20)
+    return views_of_dn100()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def blank():
-    """Views of three cameras without edges."""
-    (one,) = views([], 1)
-    return [replace(one, camera=camera) for camera in cameras()]
+    return views_without_edges()
 
 
 def exact_segments(camera, truth, sides=(0, 1)):

@@ -3,25 +3,24 @@
 
 import numpy as np
 import pytest
-from synthetic import TARGET, pick, pipe, station, views
+from synthetic import DN100, TARGET, pick, pipe, station, views, views_of_dn100
 
 from pipeworkbench.recon.pipes import PickSettings, from_pick
 from pipeworkbench.recon.reconstruct import as_component, level_of_accuracy, pipe_from_pick
 
 pytestmark = pytest.mark.slow  # a search takes seconds
 
-DN100 = pipe()
 PIPES = {
     "DN 100 upright": pipe(114.3, (5.0, 0.0)),
-    "DN 100 into the depth": pipe(114.3, (10.0, 15.0)),
+    "DN 100 into the depth": DN100,
     "DN 80 level": pipe(88.9, (85.0, 5.0)),
     "DN 150 slanting": pipe(168.3, (20.0, -10.0), centre=np.add(TARGET, [50.0, 300.0, -30.0])),
 }
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def seen():
-    return views([DN100], seed=20)
+    return views_of_dn100()
 
 
 def assert_is(candidate, truth):

@@ -189,26 +189,23 @@ def monte_carlo(planes_of, truth, redundancy, solve=cylinder_from_images):
     assert np.sqrt(np.mean(np.square(shifts))) == pytest.approx(np.sqrt(np.mean(np.square(sigmas))), rel=0.15)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [2, 3])
-def test_errors_from_both_edges_agree_with_the_sigmas(count):
-    truth = pipe().cylinder
-    monte_carlo(lambda noise: [apparent(c, truth, 250.0, 4, noise, 0.3) for c in STRAIGHT[:count]], truth, 4 * count - 5)
+BOTH = slice(2)
 
 
 @pytest.mark.slow
-def test_errors_from_three_planes_agree_with_the_sigmas():
-    truth = pipe().cylinder
-    monte_carlo(
-        lambda noise: [apparent(STRAIGHT[0], truth, 250.0, 4, noise, 0.3), apparent(STRAIGHT[1], truth, 250.0, 4, noise, 0.3).edges[0]], truth, 1
-    )
+@pytest.mark.parametrize(
+    ("tilt_deg", "edges", "sigma_px"),
+    [((10.0, 15.0), (BOTH, BOTH), 0.3), ((10.0, 15.0), (BOTH, BOTH, BOTH), 0.3), ((10.0, 15.0), (BOTH, 0), 0.3), ((40.0, 10.0), (0, 1, 0), 0.1)],
+    ids=["both edges in two images", "both in three", "both and one", "one in each of three"],
+)
+def test_errors_agree_with_the_sigmas(tilt_deg, edges, sigma_px):
+    truth = pipe(tilt_deg=tilt_deg).cylinder
 
+    def planes(noise):
+        seen = [apparent(camera, truth, 250.0, 4, noise, sigma_px) for camera in STRAIGHT[: len(edges)]]
+        return [one if which == BOTH else one.edges[which] for one, which in zip(seen, edges, strict=True)]
 
-@pytest.mark.slow
-def test_errors_from_one_edge_in_each_image_agree_with_the_sigmas():
-    truth = pipe(tilt_deg=(40.0, 10.0)).cylinder
-    sides = (0, 1, 0)
-    monte_carlo(lambda noise: [apparent(c, truth, 250.0, 4, noise, 0.1).edges[side] for c, side in zip(STRAIGHT, sides, strict=True)], truth, 1)
+    monte_carlo(planes, truth, 2 * sum(2 if which == BOTH else 1 for which in edges) - 5)
 
 
 def test_errors_from_a_diameter_agree_with_the_sigmas():

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """From one edge in space and the list of diameters to the pipe: the second edge decides."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from synthetic import TARGET, cameras, pipe, views
+from synthetic import DN100, TARGET, pipe, views, views_of_dn100, views_without_edges
 
 from pipeworkbench.catalogue import pipe_sizes
 from pipeworkbench.recon.edge_lines import EdgeLines
@@ -13,22 +11,21 @@ from pipeworkbench.recon.second_edges import SecondEdgeSettings, cylinders_from_
 
 DIAMETERS = np.array([size.outer_diameter for size in pipe_sizes() if size.series == 1 and 15 <= size.outer_diameter <= 700])
 PIPES = {
-    "DN 100 into the depth": pipe(114.3, (10.0, 15.0)),
+    "DN 100 into the depth": DN100,
     "DN 150 slanting": pipe(168.3, (30.0, -10.0), centre=np.add(TARGET, [40.0, 500.0, -20.0])),
 }
 TRUTH = PIPES["DN 100 into the depth"]
 VIEWPOINT = np.array([0.0, 0.0, 200.0])  # the middle of the three projection centres
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def seen():
-    return views([TRUTH], seed=20)
+    return views_of_dn100()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def blank():
-    (one,) = views([], 1)
-    return [replace(one, camera=camera) for camera in cameras()]
+    return views_without_edges()
 
 
 def edge_of(truth, sides=(1, -1), inwards=1.0, half=200.0):
