@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from pipeworkbench import __version__
+from pipeworkbench.catalogue import using_folder
 from pipeworkbench.errors import InputError, PipeWorkbenchError
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     logging.basicConfig(level=logging.ERROR if options.quiet else logging.WARNING, format="%(levelname)s: %(message)s")
     try:
-        return int(options.run(options))
+        with using_folder(getattr(options, "catalogue", None)):
+            return int(options.run(options))
     except PipeWorkbenchError as error:
         print(f"pipeworkbench: {error}", file=sys.stderr)
         return BAD_INPUT
@@ -80,6 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--diameters", metavar=("FROM", "TO"), nargs=2, type=float, help="outside diameters to consider in mm")
     command.add_argument("--quiet", action="store_true", help="no table, no progress, no warnings")
     command.add_argument("--json", action="store_true", help="print a machine-readable summary instead of the table")
+    _add_catalogue(command)
     command.set_defaults(run=_reconstruct)
     _add_convert(commands)
     return parser
@@ -105,7 +108,12 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
     command.add_argument("--cameras", metavar="NAME", nargs="+", help="cameras to take, in this order; the first is the reference")
     command.add_argument("--name", help="name of the station; default: that of its folder")
     command.add_argument("--quiet", action="store_true", help="no output, no warnings")
+    _add_catalogue(command)
     command.set_defaults(run=_convert)
+
+
+def _add_catalogue(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--catalogue", metavar="DIR", type=Path, help="folder with CSV tables of your own, which add to the standards'")
 
 
 def _reconstruct(options: argparse.Namespace) -> int:

@@ -41,10 +41,12 @@ class Command:
 
     def Activated(self) -> None:  # FreeCAD's name
         """Run the command; whatever goes wrong is told in a dialog and in the report view."""
+        from pipeworkbench.features.preferences import use_preferred_catalogue
         from pipeworkbench.gui.dialogs import Cancelled, show_error
 
         try:
             self._check_packages()
+            use_preferred_catalogue()
             self.run()
         except Cancelled:
             FreeCAD.Console.PrintMessage(f"{self.menu_text}: cancelled\n")

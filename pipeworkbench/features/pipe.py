@@ -9,14 +9,17 @@ from typing import Any
 import FreeCAD
 import Part
 
-from pipeworkbench.catalogue import PIPE_STANDARD, pipe_size, pipe_sizes
+from pipeworkbench.catalogue import pipe_size, pipe_sizes
 from pipeworkbench.features.base import HIDDEN, READ_ONLY, Feature, Property, is_restoring
+from pipeworkbench.features.preferences import start_with_preferred_catalogue
 from pipeworkbench.pipeline import Pipe
 
 NO_NOMINAL_DIAMETER = "none"
 NO_PICK = -1
 SAME_MM = 1e-3  # what a geometry may differ from the measured one and still be it
 GRADES = {None: "", 0: "not verified", 1: "one source", 2: "two sources or more"}
+
+start_with_preferred_catalogue()  # before documents are opened, whose pipes may have sizes of the user's own
 
 
 class PipeFeature(Feature):
@@ -51,7 +54,7 @@ class PipeFeature(Feature):
     def add_properties(self, obj: Any) -> None:
         """Add what is missing; the list of nominal diameters comes from the catalogue."""
         super().add_properties(obj)
-        wanted = [NO_NOMINAL_DIAMETER, *(size.designation for size in pipe_sizes() if size.dn)]
+        wanted = list(dict.fromkeys((NO_NOMINAL_DIAMETER, *(size.designation for size in pipe_sizes() if size.dn))))
         if obj.getEnumerationsOfProperty("NominalDiameter") != wanted:
             chosen = obj.NominalDiameter
             obj.NominalDiameter = wanted
@@ -74,7 +77,11 @@ class PipeFeature(Feature):
         if not all(hasattr(obj, needed) for needed in ("NominalDiameter", "OutsideDiameter", "WallThickness", "StandardSources")):
             return  # still being made
         if name == "NominalDiameter":
-            size = next((size for size in pipe_sizes() if size.designation == obj.NominalDiameter), None)
+            named = (size for size in pipe_sizes() if size.designation == obj.NominalDiameter)
+            size = min(named, key=lambda size: size.series, default=None)  # the usual one first
+            present = pipe_size(obj.OutsideDiameter.Value)
+            if present is not None and present.designation == obj.NominalDiameter:
+                size = present  # a user's table may have several outside diameters of one DN
             if size is not None and abs(obj.OutsideDiameter.Value - size.outer_diameter) > 1e-6:
                 obj.OutsideDiameter = size.outer_diameter
                 obj.WallThickness = size.wall_thickness or 0
@@ -82,7 +89,7 @@ class PipeFeature(Feature):
         size = pipe_size(obj.OutsideDiameter.Value)
         if size is not None and size.wall_thickness and obj.NominalDiameter != size.designation:
             obj.WallThickness = size.wall_thickness
-        obj.Standard = PIPE_STANDARD if size else ""
+        obj.Standard = size.standard if size else ""
         obj.StandardSources = GRADES[size.weakest_source if size else None]
         nominal = size.designation if size and size.dn else NO_NOMINAL_DIAMETER
         if obj.NominalDiameter != nominal:

@@ -10,9 +10,8 @@ from pathlib import Path
 import FreeCAD
 import FreeCADGui
 
+from pipeworkbench.features.preferences import PREFERENCES
 from pipeworkbench.gui.compat import QtCore, QtWidgets
-
-PREFERENCES = "User parameter:BaseApp/Preferences/Mod/PipeWorkbench"
 
 
 class Cancelled(Exception):  # noqa: N818  # not an error: the user's wish

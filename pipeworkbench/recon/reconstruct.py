@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeworkbench.catalogue import PIPE_STANDARD
 from pipeworkbench.pipeline import Pipe, Pipeline
 from pipeworkbench.recon.picks import Picks, PipePick
 from pipeworkbench.recon.pipes import PipeCandidate, from_pick
@@ -135,7 +134,7 @@ def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, 
         outer_diameter=size.outer_diameter if size else round(2 * solution.cylinder.radius, 3),
         wall_thickness=size.wall_thickness if size else None,
         dn=size.dn if size else None,
-        standard=PIPE_STANDARD if size else None,
+        standard=size.standard if size else None,
         verified=size.weakest_source if size else None,  # type: ignore[arg-type]  # the table holds 0, 1, 2
         pick=pick.index if pick else None,
         station=station,
