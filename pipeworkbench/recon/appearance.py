@@ -8,13 +8,16 @@ and tilt are right, and anything but the same when they are wrong.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
-from pipeworkbench.recon.views import View, brightness_at
+from pipeworkbench.recon.cylinder import Cylinders, edge_points, spread
+from pipeworkbench.recon.interpolation import NODES, interpolation
+from pipeworkbench.recon.views import View, brightness_between
 
 ALONG, ACROSS = 12, 15  # samples; the median along the pipe leaves brackets and stains out
 MARGIN = 0.08  # of the width at either side: the limb itself is the edges' business
@@ -28,16 +31,29 @@ def shading(view: View, cylinders: Cylinders, extents: Array) -> Array:
 
     ``extents`` (k, 2) are mm along the axes.
     """
-    along = spread(extents, np.linspace(0.05, 0.95, ALONG))
-    sides, _ = outlines(view.camera, cylinders, along)
-    weight = np.linspace(MARGIN, 1 - MARGIN, ACROSS)[:, None]
-    where = sides[:, 0, :, None, :] * (1 - weight) + sides[:, 1, :, None, :] * weight
-    seen = np.isfinite(where[..., 0])
-    grey = brightness_at(view, where, seen)
-    enough = seen.all(axis=2).mean(axis=1) >= LEAST_SEEN
+    points = edge_points(view.camera, cylinders, spread(extents, (1 + NODES) / 2))
+    grey = brightness_between(view, points.reshape(len(cylinders), 2 * len(NODES), 3), _sampling()).reshape(-1, ALONG, ACROSS)
+    enough = np.isfinite(grey).all(axis=2).mean(axis=1) >= LEAST_SEEN
     profile = np.full((len(cylinders), ACROSS), np.nan)
-    profile[enough] = np.nanmedian(grey[enough], axis=1)
+    profile[enough] = _median(grey[enough])
     return profile
+
+
+@functools.cache
+def _sampling() -> NDArray[np.float32]:
+    """Return weights (2 nodes, n) from nodes on both limbs to samples along and across."""
+    along = interpolation(NODES, np.linspace(-0.9, 0.9, ALONG))
+    across = np.linspace(MARGIN, 1 - MARGIN, ACROSS)
+    weights = np.einsum("eb,ia->eiab", np.stack([1 - across, across]), along)
+    return weights.reshape(2 * len(NODES), -1).astype(np.float32)
+
+
+def _median(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the medians (k, m) of what is known of values (k, n, m): as NumPy's ``nanmedian``, but many times faster."""
+    ascending = np.sort(values, axis=1)  # NaN last
+    known = np.isfinite(values).sum(axis=1, keepdims=True)
+    middle = [np.take_along_axis(ascending, np.maximum(row, 0), axis=1)[:, 0] for row in ((known - 1) // 2, known // 2)]
+    return (middle[0] + middle[1]) / 2
 
 
 def likeness(views: Sequence[View], reference: int, cylinders: Cylinders, extents: Array) -> Array:

@@ -83,13 +83,13 @@ class Camera:
     def project_with_derivative(self, points: Array) -> tuple[Array, Array]:
         """Return pixels (n, 2) and d pixels / d points (n, 2, 3); the paper's Eqs. 7 and 8 with distortion."""
         local, ideal, pixels = self._project(points)
-        return pixels, self._derivative(local, ideal, pixels) @ self.rotation
+        return pixels, self._turned(self._derivative(local, ideal, pixels))
 
     def project_with_derivatives(self, points: Array) -> Projection:
         """Project points (n, 3) with the derivatives by the points and by every parameter of the camera."""
         local, ideal, pixels = self._project(points)
         by_local = self._derivative(local, ideal, pixels)
-        by_point = by_local @ self.rotation
+        by_point = self._turned(by_local)
         # a turned camera sees the point at local + w x local, and g (w x l) = w (l x g)
         by_exterior = np.concatenate([-by_point, np.cross(local[:, None, :], by_local)], axis=2)
         return Projection(pixels, by_point, by_exterior, self.interior.parameter_derivative(ideal, pixels))
@@ -122,27 +122,35 @@ class Camera:
 
     def sees(self, pixels: Array, margin: float = 0.0) -> NDArray[np.bool_]:
         """Return which pixels (n, 2) lie in the image, at least ``margin`` pixels from its border."""
-        size = np.array([self.interior.width, self.interior.height])
+        u, v = pixels[..., 0], pixels[..., 1]
+        right, bottom = self.interior.width - 1 - margin, self.interior.height - 1 - margin
         with np.errstate(invalid="ignore"):
-            return np.all((pixels >= margin) & (pixels <= size - 1 - margin), axis=-1)
+            return (u >= margin) & (u <= right) & (v >= margin) & (v <= bottom)
 
     def _project(self, points: Array) -> tuple[Array, Array, Array]:
         """Return points in the camera's frame (n, 3), ideal coordinates and pixels (n, 2); the latter NaN where not seen."""
-        local = (np.asarray(points, float) - self.projection_centre) @ self.rotation.T
+        # transposed, so that each coordinate is in one piece for what follows
+        local = (self.rotation @ (np.asarray(points, float) - self.projection_centre).T).T
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            ideal = np.where(local[:, 2:] > 0, local[:, :2] / local[:, 2:], np.nan)
+            depth = np.where(local[:, 2] > 0, local[:, 2], np.nan)
+            ideal = (local[:, :2].T / depth).T
             pixels = self.interior.pixels(ideal)
-        ideal[np.isnan(pixels)] = np.nan
+        np.copyto(ideal, np.nan, where=np.isnan(pixels))
         return local, ideal, pixels
 
     def _derivative(self, local: Array, ideal: Array, pixels: Array) -> Array:
         """Return d pixels / d local (n, 2, 3)."""
+        by_ideal = self.interior.pixel_derivative(ideal, pixels).transpose(1, 2, 0)
+        by_local = np.empty((2, 3, len(local)))
+        # d (x / z, y / z) = (dx, dy) / z - (x, y) / z dz / z
         with np.errstate(invalid="ignore", divide="ignore"):
-            depth = local[:, 2:]
-            perspective = np.zeros((len(local), 2, 3))
-            perspective[:, 0, 0] = perspective[:, 1, 1] = 1 / depth[:, 0]
-            perspective[:, :, 2] = -ideal / depth
-        return self.interior.pixel_derivative(ideal, pixels) @ perspective
+            by_local[:, :2] = by_ideal / local[:, 2]
+            by_local[:, 2] = -(by_local[:, 0] * ideal[:, 0] + by_local[:, 1] * ideal[:, 1])
+        return by_local.transpose(2, 0, 1)
+
+    def _turned(self, by_local: Array) -> Array:
+        """Return derivatives (n, 2, 3) by the station's coordinates from those by the camera's: one product for all points."""
+        return (self.rotation.T @ by_local.transpose(1, 2, 0)).transpose(2, 0, 1)
 
     @staticmethod
     def _local_rays(ideal: Array) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array, Camera
+from pipeworkbench.recon.interpolation import NODES, interpolation
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,12 +108,14 @@ def edge_lines(cylinders: Cylinders, projection_centre: Array) -> tuple[Array, A
     return cylinders.points[:, None, :] + cylinders.radii[:, None, None] * outward, outward
 
 
-def _edge_points(camera: Camera, cylinders: Cylinders, along: Array) -> tuple[Array, Array, Array]:
-    """Return points (k * 2 * n, 3) on the edges, the axes' directions there and outward normals (k, 2, 3)."""
-    lines, outward = edge_lines(cylinders, camera.projection_centre)
-    direction = np.broadcast_to(cylinders.directions[:, None, None, :], (len(cylinders), 2, along.shape[1], 3))
-    points = lines[:, :, None, :] + along[:, None, :, None] * direction
-    return points.reshape(-1, 3), direction.reshape(-1, 3), outward
+def edge_points(camera: Camera, cylinders: Cylinders, along: Array) -> Array:
+    """Return points (k, 2, n, 3) on the edges that a camera sees at signed distances ``along`` (k, n) from the cylinders' points."""
+    lines, _ = edge_lines(cylinders, camera.projection_centre)
+    return _along_lines(lines, cylinders.directions, along)
+
+
+def _along_lines(lines: Array, directions: Array, along: Array) -> Array:
+    return np.asarray(lines[:, :, None, :] + along[:, None, :, None] * directions[:, None, None, :])
 
 
 def outlines(camera: Camera, cylinders: Cylinders, along: Array, *, unseen: bool = False) -> tuple[Array, Array]:
@@ -121,8 +124,8 @@ def outlines(camera: Camera, cylinders: Cylinders, along: Array, *, unseen: bool
     The normals come from neighbouring samples (n >= 2) instead of derivatives: good enough to search
     along them, not to adjust with. ``unseen`` leaves positions beyond the image's border as they are.
     """
-    points, _, _ = _edge_points(camera, cylinders, along)
-    position = camera.project(points).reshape(len(cylinders), 2, along.shape[1], 2)
+    points = edge_points(camera, cylinders, along)
+    position = camera.project(points.reshape(-1, 3)).reshape(len(cylinders), 2, along.shape[1], 2)
     tangent = np.gradient(position, axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
         tangent /= np.linalg.norm(tangent, axis=3, keepdims=True)
@@ -134,20 +137,50 @@ def outlines(camera: Camera, cylinders: Cylinders, along: Array, *, unseen: bool
     return position, normal
 
 
-def contours(camera: Camera, cylinders: Cylinders, along: Array) -> Contours:
-    """Return the edges of cylinders in an image at signed distances ``along`` (k, n) from their points."""
-    points, direction, outward = _edge_points(camera, cylinders, along)
-    shape = (len(cylinders), 2, along.shape[1])
-    position, derivative = camera.project_with_derivative(points)
-    position[~camera.sees(position)] = np.nan
-    surface = np.broadcast_to(outward[:, :, None, :], (*shape, 3)).reshape(-1, 3)
+def contours(camera: Camera, cylinders: Cylinders, along: Array, *, unseen: bool = False) -> Contours:
+    """Return the edges of cylinders in an image at signed distances ``along`` (k, n) from their points.
+
+    ``unseen`` leaves positions beyond the image's border as they are.
+    """
+    lines, outward = edge_lines(cylinders, camera.projection_centre)
+    points = _along_lines(lines, cylinders.directions, along)
+    shape = points.shape[:3]
+    position, derivative = camera.project_with_derivative(points.reshape(-1, 3))
+    if not unseen:
+        np.copyto(position, np.nan, where=~camera.sees(position)[:, None])
     with np.errstate(invalid="ignore", divide="ignore"):
-        tangent = np.einsum("nij,nj->ni", derivative, direction)
-        tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-        normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
-        gain = np.einsum("ni,nij,nj->n", normal, derivative, surface)
+        tangent = _by_motion(derivative, cylinders.directions[:, None, None], shape)
+        tangent /= np.sqrt(tangent[0] ** 2 + tangent[1] ** 2)
+        across = _by_motion(derivative, outward[:, :, None], shape)
+        gain = tangent[1] * across[0] - tangent[0] * across[1]
         sign = np.where(gain < 0, -1.0, 1.0)
-    return Contours(position.reshape(*shape, 2), (normal * sign[:, None]).reshape(*shape, 2), (gain * sign).reshape(shape), outward)
+    normal = np.stack([tangent[1] * sign, -tangent[0] * sign], axis=3)
+    return Contours(position.reshape(*shape, 2), normal, gain * sign, outward)
+
+
+def smooth_contours(camera: Camera, cylinders: Cylinders, extents: Array, fractions: Array) -> Contours:
+    """Return the edges at fractions (n,) of the way along extents (k, 2), as :func:`contours` does, but project a few nodes only.
+
+    Between them all is smooth: along what was clicked the positions are off by less than 0.01 px.
+    """
+    nodes = contours(camera, cylinders, spread(extents, (1 + NODES) / 2), unseen=True)
+    # quantities before samples: one product of matrices for all
+    stacked = np.concatenate([np.moveaxis(nodes.position, 3, 2), np.moveaxis(nodes.normal, 3, 2), nodes.gain[:, :, None]], axis=2)
+    smooth = stacked @ interpolation(NODES, 2 * fractions - 1)
+    position, normal, gain = np.moveaxis(smooth[:, :, :2], 2, 3), np.moveaxis(smooth[:, :, 2:4], 2, 3), smooth[:, :, 4]
+    np.copyto(position, np.nan, where=~camera.sees(position)[..., None])
+    known = np.isfinite(nodes.gain).reshape(len(cylinders), 2 * len(NODES))
+    cut = known.any(axis=1) & ~known.all(axis=1)
+    if cut.any():  # those that reach out of the camera's field
+        exact = contours(camera, cylinders[cut], spread(extents[cut], fractions))
+        position[cut], normal[cut], gain[cut] = exact.position, exact.normal, exact.gain
+    return Contours(position, normal, gain, nodes.outward)
+
+
+def _by_motion(derivative: Array, vectors: Array, shape: tuple[int, ...]) -> Array:
+    """Return how points move in the image (2, k, 2, n) by derivatives (k * 2 * n, 2, 3) along vectors, broadcast to (k, 2, n, 3)."""
+    by = derivative.transpose(1, 2, 0).reshape(2, 3, *shape)
+    return np.asarray(by[:, 0] * vectors[..., 0] + by[:, 1] * vectors[..., 1] + by[:, 2] * vectors[..., 2])
 
 
 def contour(camera: Camera, cylinder: Cylinder, along: Array) -> Contours:

@@ -9,6 +9,7 @@ better: bench/edges.py) and :mod:`.partial_area_edges` (the paper's).
 
 from __future__ import annotations
 
+import functools
 import os
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, fields
@@ -26,6 +27,8 @@ Grey = NDArray[np.uint8] | NDArray[np.uint16]
 KERNEL_REACH = 3.2  # kernel half width in standard deviations
 STRIP_BLOCKS = 8  # blocks of the noise estimate in a strip's height: its arrays stay near the processor's cache
 BORDER = 2  # px along the image's border without edges: their profile is not in the image
+DIRECTIONS = 128  # coarse ones in half a turn
+NO_DIRECTION = 1
 CORES = os.cpu_count() or 1
 
 
@@ -98,6 +101,16 @@ class EdgeMap(EdgePoints):
 
     index: NDArray[np.int32]
 
+    @functools.cached_property
+    def directions(self) -> NDArray[np.uint8]:
+        """Where ``index`` (height, width) is a point, the direction of its normal as :func:`coarse_directions` gives it, else an odd number.
+
+        A quarter of the index's size: what is looked up in it stays in the processor's cache, and the points
+        that are an edge's of another direction, which are most, need not be looked at.
+        """
+        # the index's -1 is the last entry
+        return np.append(coarse_directions(*self.normal.T), np.uint8(NO_DIRECTION)).take(self.index, mode="wrap")
+
 
 @dataclass(frozen=True, eq=False)
 class Strip:
@@ -111,6 +124,15 @@ class Strip:
     noise: NDArray[np.float32]
     halo: int
     floor: float
+
+
+def coarse_directions(along_u: Array, along_v: Array) -> NDArray[np.uint8]:
+    """Return the directions (n,) of vectors with components (n,) as even numbers that are the same for both signs: 256 is half a turn.
+
+    Differences in this type wrap around as the directions do.
+    """
+    steps = np.rint(np.arctan2(along_v, along_u) * (DIRECTIONS / np.pi)).astype(np.int32)
+    return (2 * steps).astype(np.uint8)
 
 
 def detect_edges(image: NDArray[Any], settings: EdgeSettings | None = None, cores: int = CORES) -> EdgeMap:

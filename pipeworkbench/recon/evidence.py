@@ -12,11 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
-from pipeworkbench.recon.match import edges_along_normals
+from pipeworkbench.recon.cylinder import Cylinders, smooth_contours
+from pipeworkbench.recon.match import edges_along_normals, nearest_rows
 from pipeworkbench.recon.views import View
 
 
@@ -64,10 +63,9 @@ def evidence(views: Sequence[View], reference: int, cylinders: Cylinders, extent
         the cylinder is not in the image.
     """
     settings = settings or EvidenceSettings()
-    along = spread(extents, np.linspace(0, 1, settings.samples))
-    own, steps = _in_view(views[reference], cylinders, along, None, settings)
+    own, steps = _in_view(views[reference], cylinders, extents, None, settings)
     polarity = _smoothed(steps, settings)
-    return np.array([own if n == reference else _in_view(view, cylinders, along, polarity, settings)[0] for n, view in enumerate(views)])
+    return np.array([own if n == reference else _in_view(view, cylinders, extents, polarity, settings)[0] for n, view in enumerate(views)])
 
 
 def _smoothed(steps: Array, settings: EvidenceSettings) -> Array:
@@ -78,49 +76,43 @@ def _smoothed(steps: Array, settings: EvidenceSettings) -> Array:
     return np.repeat(mean, settings.stretch, axis=2)
 
 
-def _in_view(view: View, cylinders: Cylinders, along: Array, polarity: Array | None, settings: EvidenceSettings) -> tuple[Array, Array]:
+def _in_view(view: View, cylinders: Cylinders, extents: Array, polarity: Array | None, settings: EvidenceSettings) -> tuple[Array, Array]:
     """Return the ratios (k, 2) and the signs (k, 2, samples) of the steps that the contours met, 0 for none."""
-    position, normal = outlines(view.camera, cylinders, along)
-    shape = position.shape[:3]
-    position, normal = position.reshape(-1, 2), normal.reshape(-1, 2)
-    visible = np.isfinite(position[:, 0]).reshape(shape)
-    count = np.maximum(visible.sum(axis=2), 1)
+    seen = smooth_contours(view.camera, cylinders, extents, np.linspace(0, 1, settings.samples))
+    shape = seen.gain.shape
+    position, normal = seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2)
+    contours = shape[0] * shape[1]
+    visible = np.isfinite(position[:, 0]).reshape(contours, -1).sum(axis=1)
+    count = np.maximum(visible, 1)
     windows = np.array(settings.background)
     sample, edge, distance = edges_along_normals(view.edges, position, normal, float(np.abs(windows).max()))
-    sign = np.sign(np.einsum("ij,ij->i", view.edges.normal[edge], normal[sample]))
 
     # nearest-edge distances of a Poisson process: P(none within a window) = exp(-density width)
     hit = np.zeros((len(position), len(windows)), bool)
     for column, (low, high) in enumerate(windows):
         hit[sample[(distance > low) & (distance < high)], column] = True
-    chance = hit.reshape(*shape, -1).sum(axis=(2, 3)) / (count * len(windows))
+    chance = hit.reshape(contours, -1).sum(axis=1) / (count * len(windows))
     width = float(np.mean(windows[:, 1] - windows[:, 0]))
     density = np.maximum(-np.log(1 - np.minimum(chance, 0.98)) / width, settings.least_density)
 
-    off, met = _nearest(len(position), sample, distance, sign, settings.search_range)
-    off, met = off.reshape(shape), met.reshape(shape)
+    # from here on only the samples that met an edge, each its nearest
+    near = np.flatnonzero(np.abs(distance) <= settings.search_range)
+    near = near[nearest_rows(sample[near], distance[near])]
+    sample, off = sample[near], np.abs(distance[near])
+    step = np.sign(np.einsum("ij,ij->i", view.edges.normal[edge[near]], normal[sample]))
+    contour = sample // shape[2]
     # a Laplace scatter forgives the tails that real edges have
     own = np.exp(-off / settings.scatter) / (2 * settings.scatter)
     if polarity is not None:
-        own *= 1 + settings.polarity_trust * polarity * met
-    by_chance = density[:, :, None] * np.exp(-2 * density[:, :, None] * off)
-    quotient = np.where(np.isnan(off), 0.0, own / by_chance)
+        own *= 1 + settings.polarity_trust * polarity.reshape(-1)[sample] * step
+    by_chance = density[contour] * np.exp(-2 * density[contour] * off)
+    quotient = own / by_chance
     rates = []
     for rate in settings.hit_rates:
-        mean = np.where(visible, np.log(rate * quotient + 1 - rate), 0.0).sum(axis=2) / count
-        rates.append(settings.stretches * mean)
-    ratio = np.logaddexp.reduce(rates, axis=0) - np.log(len(rates))
-    enough = (visible.sum(axis=2) >= settings.least_visible * shape[2]).all(axis=1)
-    return np.where(enough[:, None], ratio, np.nan), np.where(off <= settings.near, met, 0.0)
-
-
-def _nearest(count: int, sample: NDArray[np.intp], distance: Array, sign: Array, reach: float) -> tuple[Array, Array]:
-    """Return the distance (count,) of each sample's nearest edge, NaN for none, and its sign, 0 for none."""
-    off = np.abs(distance)
-    near = np.flatnonzero(off <= reach)
-    # write the far ones first: the nearest of each sample stays
-    near = near[np.argsort(-off[near])]
-    nearest, met = np.full(count, np.nan), np.zeros(count)
-    nearest[sample[near]] = off[near]
-    met[sample[near]] = sign[near]
-    return nearest, met
+        met = np.bincount(contour, np.log1p(rate / (1 - rate) * quotient), contours)
+        rates.append(settings.stretches * (met + visible * np.log(1 - rate)) / count)
+    ratio = (np.logaddexp.reduce(rates, axis=0) - np.log(len(rates))).reshape(shape[:2])
+    enough = (visible >= settings.least_visible * shape[2]).reshape(shape[:2]).all(axis=1)
+    steps = np.zeros(len(position))
+    steps[sample[off <= settings.near]] = step[off <= settings.near]
+    return np.where(enough[:, None], ratio, np.nan), steps.reshape(shape)

@@ -17,7 +17,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pipeworkbench.recon.inversion import Array, RadialInverse, determinant, inverse_2x2, invert, length
+from pipeworkbench.recon.inversion import Array, RadialInverse, by_columns, determinant, inverse_2x2, invert, length
 
 FIELD_SAMPLES = 16  # along each side of the image, in search of the widest ray
 FIELD_MARGIN = 1.15  # points beyond the image corner's field angle by more than this are not projected
@@ -138,9 +138,9 @@ class PhotogrammetricInterior(Interior):
         return self._corrected(self._image(pixels))[0] / self.principal_distance
 
     def pixels(self, ideal: Array) -> Array:  # noqa: D102
-        target = np.where(self._outside(ideal)[:, None], np.nan, ideal * self.principal_distance)
+        target = ideal * np.where(self._outside(ideal), np.nan, self.principal_distance)[:, None]
         image = invert(self._corrected, target, self._radial_inverse.start(target))
-        image[self._radial_inverse.beyond(image)] = np.nan
+        np.copyto(image, np.nan, where=self._radial_inverse.beyond(image)[:, None])
         return (image + self.principal_point) / self.pixel_pitch + self._centre
 
     def pixel_derivative(self, ideal: Array, pixels: Array) -> Array:  # noqa: ARG002, D102
@@ -185,17 +185,17 @@ class PhotogrammetricInterior(Interior):
         """Return image coordinates without distortion (n, 2) and their derivative (n, 2, 2)."""
         x, y = image.T
         r2 = x * x + y * y
-        radial = self._radial(r2)
-        slope = 2 * (self.A1 + 2 * self.A2 * r2)  # d radial / dx = x * slope, d radial / dy = y * slope
-        corrected = np.empty_like(image)
-        corrected[:, 0] = x - (x * radial + self.B1 * (r2 + 2 * x * x) + 2 * self.B2 * x * y + self.C1 * x + self.C2 * y)
-        corrected[:, 1] = y - (y * radial + self.B2 * (r2 + 2 * y * y) + 2 * self.B1 * x * y)
-        mixed = x * y * slope + 2 * self.B1 * y + 2 * self.B2 * x
-        derivative = np.empty((len(x), 2, 2))
-        derivative[:, 0, 0] = 1 - (radial + x * x * slope + 6 * self.B1 * x + 2 * self.B2 * y + self.C1)
-        derivative[:, 0, 1] = -(mixed + self.C2)
-        derivative[:, 1, 0] = -mixed
-        derivative[:, 1, 1] = 1 - (radial + y * y * slope + 6 * self.B2 * y + 2 * self.B1 * x)
+        slope = 2 * self.A1 + 4 * self.A2 * r2  # d radial / dx = x * slope, d radial / dy = y * slope
+        # the docstring's formulas with what is common to x and y, and its derivatives, taken out
+        shrunk = (1 + self.A1 * self.r0**2 + self.A2 * self.r0**4) - r2 * (self.A1 + self.A2 * r2) - 2 * (self.B1 * x + self.B2 * y)
+        by_x, by_y = x * slope + 2 * self.B1, y * slope + 2 * self.B2
+        corrected, derivative = by_columns(len(x))
+        corrected[:, 0] = x * (shrunk - self.C1) - self.B1 * r2 - self.C2 * y
+        corrected[:, 1] = y * shrunk - self.B2 * r2
+        derivative[:, 0, 0] = shrunk - x * (by_x + 2 * self.B1) - self.C1
+        derivative[:, 0, 1] = -x * by_y - 2 * self.B1 * y - self.C2
+        derivative[:, 1, 0] = -y * by_x - 2 * self.B2 * x
+        derivative[:, 1, 1] = shrunk - y * (by_y + 2 * self.B2)
         return corrected, derivative
 
 
@@ -318,12 +318,11 @@ class OpenCVInterior(Interior):
         radial, below = self._radial(r2)
         # derivative of the radial factor with respect to r2
         slope = (k1 + r2 * (2 * k2 + r2 * 3 * k3) - radial * (k4 + r2 * (2 * k5 + r2 * 3 * k6))) / below
-        distorted = np.empty_like(ideal)
+        distorted, derivative = by_columns(len(x))
         distorted[:, 0] = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x) + r2 * (s1 + r2 * s2)
         distorted[:, 1] = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y + r2 * (s3 + r2 * s4)
         prism_x, prism_y = s1 + 2 * r2 * s2, s3 + 2 * r2 * s4  # with respect to r2
         mixed = 2 * x * y * slope + 2 * p1 * x + 2 * p2 * y
-        derivative = np.empty((len(x), 2, 2))
         derivative[:, 0, 0] = radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x + 2 * x * prism_x
         derivative[:, 0, 1] = mixed + 2 * y * prism_x
         derivative[:, 1, 0] = mixed + 2 * x * prism_y

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+PLAIN_ITERATIONS = 4  # of all points together, undamped: what a good start needs
 NEWTON_ITERATIONS = 40
-NEWTON_TOLERANCE = 1e-8  # of the coordinates, BEFORE the last step, which squares what is missing
+NEWTON_TOLERANCE = 1e-7  # of the coordinates, BEFORE the last step, which squares what is missing
 SHORTER, LONGER = 0.25, 2.0  # factors on the next step where one fails to come nearer, where one does
 SHORTEST = 1e-4  # of a Newton step: where even this does not come nearer, there is no solution
 FOLD_SLACK = 1.02  # decentring moves the fold a little away from where the radial part alone has it
@@ -61,7 +62,7 @@ class RadialInverse:
 
 
 def invert(function: Callable[[Array], tuple[Array, Array]], target: Array, start: Array) -> Array:
-    """Solve function(x) = target (n, 2) for all rows by Newton's method with damped steps.
+    """Solve function(x) = target (n, 2) for all rows by Newton's method, with damped steps where plain ones do not lead there.
 
     Parameters
     ----------
@@ -75,12 +76,33 @@ def invert(function: Callable[[Array], tuple[Array, Array]], target: Array, star
     (n, 2) array
         The solutions; NaN where there is none or where the mapping turns the image over.
     """
-    solution = np.full_like(target, np.nan)
-    rows = np.flatnonzero(np.isfinite(length(target)))
-    goal, position = target[rows], start[rows]
+    with np.errstate(all="ignore"):
+        size = length(target)
+        tolerance = NEWTON_TOLERANCE * np.maximum(size, 1.0)
+        position = start
+        for _ in range(PLAIN_ITERATIONS):
+            value, derivative = function(position)
+            missing = target - value
+            distance = length(missing)
+            position = position + solve_2x2(derivative, missing)
+            if not (distance > tolerance).any():
+                break
+        solved = (distance <= tolerance) & (determinant(derivative) > 0)
+    if solved.all():
+        return position
+    position[~solved] = np.nan
+    rows = np.flatnonzero(~solved & np.isfinite(size))
+    if len(rows):
+        position[rows] = _invert_damped(function, target[rows], start[rows], tolerance[rows])
+    return position
+
+
+def _invert_damped(function: Callable[[Array], tuple[Array, Array]], goal: Array, position: Array, tolerance: Array) -> Array:
+    """Return the solutions (n, 2) of :func:`invert` by steps that are shortened until they come nearer the goal (n, 2)."""
+    solution = np.full_like(goal, np.nan)
+    rows = np.arange(len(goal))
     damping = np.ones(len(rows))
     with np.errstate(all="ignore"):
-        tolerance = NEWTON_TOLERANCE * np.maximum(length(goal), 1.0)
         value, derivative = function(position)
         missing = goal - value
         distance = length(missing)
@@ -106,6 +128,11 @@ def invert(function: Callable[[Array], tuple[Array, Array]], target: Array, star
             damping = np.minimum(1.0, damping * np.where(worse, SHORTER, LONGER))
             position, missing, distance, derivative = moved, left, remaining, slope
     return solution
+
+
+def by_columns(count: int) -> tuple[Array, Array]:
+    """Return empty vectors (n, 2) and matrices (n, 2, 2) that have each component in one piece: what is computed by component is faster so."""
+    return np.empty((2, count)).T, np.empty((2, 2, count)).transpose(2, 0, 1)
 
 
 def length(vectors: Array) -> Array:

@@ -13,13 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.edges import EdgeMap
+from pipeworkbench.recon.edges import DIRECTIONS, EdgeMap, coarse_directions
 
 STEP_PX = 1.0  # the index answers for the pixels beside an edge too: no edge slips through between look-ups
-CHUNK = 2048  # samples at a time: their look-ups stay in the processor's cache
+LOOK_UPS = 32768  # at a time: they stay in the processor's cache
 LATERAL_PX = 1.0  # an edge point further than this beside the normal belongs to another sample
 LARGEST_ANGLE = float(np.radians(20))  # between the contour's and an edge's normal
-OUTSIDE = -1_000_000.0  # px; where samples that are not in the image are put
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,45 +56,65 @@ def edges_along_normals(
     -------
     sample, edge, distance : (m,) arrays
         Rows of samples and edges that belong together and the distance in px along the normal; an
-        edge that two look-ups of one sample hit appears twice.
+        edge that two look-ups of one sample hit appears twice. Samples ascend.
     """
     least_cosine = -1.0 if largest_angle is None else float(np.cos(largest_angle))
-    parts = [_edges_along_normals(edges, positions, normals, search_range, least_cosine, start) for start in range(0, max(len(positions), 1), CHUNK)]
+    reach = np.arange(0.0, search_range + STEP_PX, STEP_PX)
+    steps = np.concatenate([-reach[:0:-1], reach]).astype(np.float32)
+    chunk = LOOK_UPS // len(steps)
+    parts = [
+        _edges_along_normals(edges, positions[first : first + chunk], normals[first : first + chunk], steps, search_range, least_cosine)
+        for first in range(0, max(len(positions), 1), chunk)
+    ]
     sample, edge, distance = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return sample, edge, distance
+    return np.repeat(np.arange(len(parts)) * chunk, [len(part[0]) for part in parts]) + sample, edge, distance
 
 
 def _edges_along_normals(
-    edges: EdgeMap, positions: Array, normals: Array, search_range: float, least_cosine: float, first: int
+    edges: EdgeMap, positions: Array, normals: Array, steps: NDArray[np.float32], search_range: float, least_cosine: float
 ) -> tuple[NDArray[np.intp], NDArray[np.int32], Array]:
-    positions, normals = positions[first : first + CHUNK], normals[first : first + CHUNK]
-    reach = np.arange(0.0, search_range + STEP_PX, STEP_PX)
-    steps = np.concatenate([-reach[:0:-1], reach]).astype(np.float32)
+    columns = np.concatenate([positions, normals], axis=1).T.copy()
+    known = np.flatnonzero(np.isfinite(columns.sum(axis=0)))
+    if len(known) < len(positions):
+        columns = columns[:, known]
+    u, v, along_u, along_v = columns
     height, width = edges.index.shape
-    known = (np.isfinite(positions) & np.isfinite(normals)).all(axis=1, keepdims=True)
-    start, normals = np.where(known, positions, OUTSIDE), np.where(known, normals, 0.0)
     # single precision decides about whole pixels only
-    half, along = (start + 0.5).astype(np.float32), normals.astype(np.float32)
-    u = np.floor(half[:, :1] + along[:, :1] * steps).astype(np.int32)
-    v = np.floor(half[:, 1:] + along[:, 1:] * steps).astype(np.int32)
-    # a negative number is a large unsigned one: one comparison for both ends
-    inside = (u.view(np.uint32) < width) & (v.view(np.uint32) < height)
-    flat = np.where(inside, v * np.int32(width) + u, 0) if height * width < 2**31 else np.where(inside, v.astype(np.int64) * width + u, 0)
-    hit = edges.index.reshape(-1).take(flat)
-    hit[~inside] = -1
+    flat = _pixels_along(v, along_v, steps, height) * np.intp(width)
+    flat += _pixels_along(u, along_u, steps, width)
+    direction = edges.directions.reshape(-1).take(flat, mode="clip")
+    hit = (direction & np.uint8(1)) == 0
+    tolerance = 2 * (int(np.ceil(np.arccos(least_cosine) * DIRECTIONS / np.pi)) + 1)  # rounding included
+    if tolerance < DIRECTIONS:
+        direction -= (coarse_directions(along_u, along_v) - np.uint8(tolerance))[:, None]
+        hit &= direction <= np.uint8(2 * tolerance)
 
     # from here on only the few look-ups that hit an edge
-    found = np.flatnonzero(hit >= 0)
+    found = np.flatnonzero(hit)
     sample = found // len(steps)
-    edge = hit.reshape(-1)[found]
-    offset = edges.position.take(edge, axis=0) - start.take(sample, axis=0)
-    normal = normals.take(sample, axis=0)
-    distance = offset[:, 0] * normal[:, 0] + offset[:, 1] * normal[:, 1]
-    lateral = np.abs(offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0])
+    edge = edges.index.reshape(-1).take(flat.reshape(-1).take(found))
+    position, normal_u, normal_v = edges.position.take(edge, axis=0), along_u.take(sample), along_v.take(sample)
+    offset_u, offset_v = position[:, 0] - u.take(sample), position[:, 1] - v.take(sample)
+    distance = offset_u * normal_u + offset_v * normal_v
+    lateral = np.abs(offset_u * normal_v - offset_v * normal_u)
     good = (lateral <= LATERAL_PX) & (np.abs(distance) <= search_range)
     if least_cosine > 0:
-        good &= np.abs(np.einsum("ij,ij->i", edges.normal.take(edge, axis=0), normal)) >= least_cosine
-    return sample[good] + first, edge[good], distance[good]
+        normal = edges.normal.take(edge, axis=0)
+        good &= np.abs(normal[:, 0] * normal_u + normal[:, 1] * normal_v) >= least_cosine
+    return known[sample[good]], edge[good], distance[good]
+
+
+def _pixels_along(start: Array, along: Array, steps: NDArray[np.float32], size: int) -> NDArray[np.int32]:
+    """Return the pixels' rows or columns (n, m) some steps (m,) from ``start`` (n,), at the border (of ``size``) where they are not in the image.
+
+    What is found in a wrong pixel there is too far from the sample to count.
+    """
+    pixel = along.astype(np.float32)[:, None] * steps
+    pixel += (start + 0.5).astype(np.float32)[:, None]
+    if start.min(initial=size) + steps[0] < 0 or start.max(initial=0) + steps[-1] > size - 1:
+        np.maximum(pixel, np.float32(0), out=pixel)
+        np.minimum(pixel, np.float32(size - 1), out=pixel)
+    return pixel.astype(np.int32)
 
 
 def match(
@@ -121,11 +140,21 @@ def match(
         sample, edge, distance = sample[good], edge[good], distance[good]
     nearest = np.full(len(positions), np.nan)
     row = np.full(len(positions), -1, np.int32)
-    # write the far ones first: the nearest of each sample stays
-    order = np.argsort(-np.abs(distance), kind="stable")
-    nearest[sample[order]] = distance[order]
-    row[sample[order]] = edge[order]
+    best = nearest_rows(sample, distance)
+    nearest[sample[best]] = distance[best]
+    row[sample[best]] = edge[best]
     return Match(nearest, row)
+
+
+def nearest_rows(sample: NDArray[np.intp], distance: Array) -> NDArray[np.intp]:
+    """Return one row for each sample of what :func:`edges_along_normals` gives, samples (m,) ascending and distances (m,): its nearest edge's."""
+    if not len(sample):
+        return np.empty(0, np.intp)
+    start = np.flatnonzero(np.diff(sample, prepend=-1))
+    off = np.abs(distance)
+    least = np.minimum.reduceat(off, start)
+    rows = np.flatnonzero(off == np.repeat(least, np.diff(start, append=len(sample))))
+    return rows[np.diff(sample[rows], append=-1) != 0]
 
 
 def quality(distances: Array, search_range: float, axis: int = -1, missing: Literal["range", "half"] = "range") -> Array:

@@ -22,7 +22,17 @@ from pipeworkbench.recon.cylinder import Cylinder, outlines
 from pipeworkbench.recon.extent import extent_of
 from pipeworkbench.recon.match import match, quality
 from pipeworkbench.recon.picks import PipePick
-from pipeworkbench.recon.search import LEAST_GAIN, Found, PickSettings, best_moved, clicked_extents, find_cylinders, joined, weights_of
+from pipeworkbench.recon.search import (
+    LEAST_GAIN,
+    Found,
+    PickSettings,
+    best_moved,
+    clicked_extents,
+    find_cylinders,
+    joined,
+    lead_over_neighbours,
+    weights_of,
+)
 from pipeworkbench.recon.tangents import PipeTangents, all_tangents_of
 from pipeworkbench.recon.views import View
 
@@ -89,13 +99,12 @@ def _from_edges(views: Sequence[View], pick: PipePick, settings: PickSettings, c
     tangents = all_tangents_of(views[pick.camera], pick)
     found: list[PipeCandidate] = []
     adjusted = _adjusted(views, pick, tangents[0], find_cylinders(views, pick, tangents, settings), settings)
-    if candidates == 1 and adjusted and adjusted[0].lead < settings.least_lead:
-        return ()
     for candidate in adjusted:
         if not any(_same(candidate, other) for other in found):
             found.append(candidate)
     completed = (_completed(views, candidate, pick, tangents[0], settings) for candidate in found)
-    return tuple(itertools.islice((c for c in completed if _in_range(c, views[pick.camera], settings)), candidates))
+    answers = tuple(itertools.islice((c for c in completed if _in_range(c, views[pick.camera], settings)), candidates))
+    return () if candidates == 1 and answers and answers[0].lead < settings.least_lead else answers
 
 
 def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, found: Sequence[Found], settings: PickSettings) -> list[PipeCandidate]:
@@ -148,9 +157,10 @@ def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, 
     if held is not None:
         tolerance = np.hypot(max(settings.tolerance * diameter, settings.least_tolerance), 2 * sigma)
         poor |= pick.diameter is None and abs(diameter - 2 * solution.cylinder.radius) > tolerance
+    lead = min(candidate.lead, lead_over_neighbours(views, pick, tangents, solution.cylinder, settings))
     q = _final_quality(views, solution.cylinder, extent, settings)
     poor |= q > WORST_QUALITY * settings.final_range
-    return replace(candidate, solution=solution, extent=extent, quality=q, diameter=diameter, sigma_diameter=sigma, approximate=bool(poor))
+    return replace(candidate, solution=solution, extent=extent, quality=q, diameter=diameter, sigma_diameter=sigma, lead=lead, approximate=bool(poor))
 
 
 def _adjusted_over(

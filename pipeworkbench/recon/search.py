@@ -40,6 +40,7 @@ NESTED_DEPTH, NESTED_COSINE = 0.015, float(np.cos(np.radians(5)))  # what counts
 LEAST_GAP_PX = 1.8  # between two rows of edges that are not the same one
 SHADING_PRICE = 5.0  # logarithm of what it costs to explain a row of edges as shading
 MOVES_PX, TILTS_PX = np.linspace(-3.9, 3.9, 7), np.linspace(-1.3, 1.3, 3)  # of a cylinder's middle and of its ends against it
+RIVAL_MOVES, RIVAL_TILTS_PX = np.array([-4.0, -3, -2, -1, 1, 2, 3, 4]), np.linspace(-2, 2, 5)  # the same, of which the first in steps
 LEAST_GAIN = 2.0  # logarithm; what a move must gain, for settled cylinders are where their edges are
 NO_RIVAL = 20.0  # lead over nothing at all, beyond the worst that was compared
 ANCHORS = np.array([-1.0, 0.0, 1.0])  # what stays when the radius changes: one edge, the axis, the other edge
@@ -64,8 +65,8 @@ class PickSettings:
     (``likeness_weight``), the clicks and the size: ``series_penalty`` per series of EN 10220 above the
     first. Where the other images speak for it by less than
     ``least_elsewhere`` there is no pipe; below ``least_score``, or with a diameter off by more
-    than ``tolerance``, a pipe is marked approximate. A pipe that does not lead those at other places by
-    ``least_lead`` is not given without the alternatives.
+    than ``tolerance``, a pipe is marked approximate. A pipe that does not lead those at other places, from
+    ``certain_within`` on, by ``least_lead`` is not given without the alternatives.
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
@@ -74,9 +75,9 @@ class PickSettings:
     step: float = 7.0
     samples: int = 10
     largest_tilt_deg: float = 65.0
-    ranked: int = 24
+    ranked: int = 40
     alternatives: int = 3
-    sized: int = 8
+    sized: int = 12
     sizes: int = 2
     widest_misfit: float = 0.15
     kept: int = 2
@@ -89,7 +90,8 @@ class PickSettings:
     series_penalty: float = 12.0
     least_score: float = 20.0
     least_elsewhere: float = 0.0
-    least_lead: float = 3.0
+    least_lead: float = 8.0
+    certain_within: float = 10.0
     least_visible: float = 0.3  # part of the samples a view must contain to have a say
     extent: ExtentSettings = field(default_factory=ExtentSettings)
 
@@ -138,7 +140,8 @@ def find_cylinders(views: Sequence[View], pick: PipePick, tangents: Sequence[Pip
     sized, which = _with_sizes(settled, standard / 2, series, origin, settings)
     if not len(sized):
         return []
-    sized = settle(views, sized, extents_of, held=True)
+    # edges draw a limb without contrast of its own to another row: so the ones that hold the clear edge are weighed as well
+    sized, which = joined([settle(views, sized, extents_of, held=True), sized]), np.tile(which, 2)
     weights = weights_of(views, pick, clicked, sized, series[which], settings, surface_samples=TextureSettings())
     best = _best_distinct(sized, weights.total, extents_of(sized), SIZED_KEPT)
     sized, weights, which = sized[best], weights[best], which[best]
@@ -168,7 +171,7 @@ def best_moved(
     with which the texture fits too.
     """
     camera = views[pick.camera].camera
-    variants = joined([cylinders, _moved(cylinders, extents, views, camera.projection_centre, camera.interior.pixels_per_radian)])
+    variants = joined([cylinders, _moved(cylinders, extents, views, camera.projection_centre, camera.interior.pixels_per_radian, MOVES_PX, TILTS_PX)])
     count = len(variants) // len(cylinders)
     lengths = np.tile(np.diff(extents, axis=1)[:, 0] / 2, count)
     middle = np.tile(extents.mean(axis=1), count)
@@ -181,13 +184,38 @@ def best_moved(
     return variants[best], weights[best]
 
 
-def _moved(cylinders: Cylinders, extents: Array, views: Sequence[View], origin: Array, pixels_per_radian: float) -> Cylinders:
+def lead_over_neighbours(views: Sequence[View], pick: PipePick, tangents: PipeTangents, cylinder: Cylinder, settings: PickSettings) -> float:
+    """Return by how much a cylinder's score exceeds the best of itself moved by ``certain_within`` and more, nearer or further.
+
+    Where a limb is hidden, mirrors its surroundings or has no contrast, edges still draw a cylinder to
+    some place with a small standard deviation; how much better that place fits than those around it tells whether it is the pipe's.
+    """
+    camera = views[pick.camera].camera
+    origin, pixels_per_radian = camera.projection_centre, camera.interior.pixels_per_radian
+    own = cylinder.as_many()
+    extents = clicked_extents(own, origin, tangents)
+    distance = float(np.linalg.norm(cylinder.at(float(extents.mean())) - origin))
+    # less than a pixel of parallax does not show
+    step = max(settings.certain_within / distance**2 * _longest_base(views, origin) * pixels_per_radian, 1.0)
+    moved = _moved(own, extents, views, origin, pixels_per_radian, step * RIVAL_MOVES, RIVAL_TILTS_PX)
+    half = np.full(len(moved), np.ptp(extents) / 2)
+    score = weights_of(views, pick, tangents, own, 1.0, settings, extents).total[0]
+    return float(score - weights_of(views, pick, tangents, moved, 1.0, settings, np.stack([-half, half], axis=1)).total.max())
+
+
+def _longest_base(views: Sequence[View], origin: Array) -> float:
+    return max(float(np.linalg.norm(view.camera.projection_centre - origin)) for view in views)
+
+
+def _moved(
+    cylinders: Cylinders, extents: Array, views: Sequence[View], origin: Array, pixels_per_radian: float, moves: Array, tilts: Array
+) -> Cylinders:
     """Return the cylinders with their ends moved along the rays from the picked camera, all of the first move first.
 
-    In the picked image they stay where they are; in the others they move by ``MOVES_PX`` and turn by ``TILTS_PX``.
+    In the picked image they stay where they are; in the others they move by ``moves`` and turn by ``tilts``, px at the longest base.
     """
-    base = max(float(np.linalg.norm(view.camera.projection_centre - origin)) for view in views)
-    middle, tilt = (x.ravel() for x in np.meshgrid(MOVES_PX, TILTS_PX))
+    base = _longest_base(views, origin)
+    middle, tilt = (x.ravel() for x in np.meshgrid(moves, tilts))
     ends = []
     for end, sign in ((0, -1.0), (1, 1.0)):
         towards = cylinders.points + extents[:, end, None] * cylinders.directions - origin
@@ -309,7 +337,7 @@ def _hypotheses(views: Sequence[View], pick: PipePick, alternatives: Sequence[Pi
     tangents = alternatives[0]
     camera = views[pick.camera].camera
     scale = camera.interior.pixels_per_radian
-    base = max(float(np.linalg.norm(v.camera.projection_centre - camera.projection_centre)) for v in views)
+    base = _longest_base(views, camera.projection_centre)
     width_error = tangents.sigma_px / (2 * tangents.half_width * scale)
 
     near, far = settings.working_range

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinders, contours, perpendicular_axes
+from pipeworkbench.recon.cylinder import Cylinders, perpendicular_axes, smooth_contours
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.views import View
 
@@ -20,6 +20,9 @@ RANGES_PX = (8.0, 6.0, 4.0, 3.0, 2.0)
 HELD_RANGES_PX = (3.0, 2.0, 2.0)
 SAMPLES = 18
 DAMPING = 1e-6  # of the largest diagonal element: keeps hypotheses without edges from a singular matrix
+
+# the parameters, two shifts and two tilts across the axis and the radius: what they move an edge by, and the power of the lever
+QUANTITY, LEVERS = np.array([0, 1, 0, 1, 2]), np.array([0, 0, 1, 1, 0])
 
 
 def settle(views: Sequence[View], cylinders: Cylinders, extents_of: Callable[[Cylinders], Array], *, held: bool = False) -> Cylinders:
@@ -59,18 +62,19 @@ def _steps(views: Sequence[View], cylinders: Cylinders, half: Array, reach: floa
     axes = np.stack(perpendicular_axes(cylinders.directions), axis=1)
     normal_matrix, right = np.zeros((len(cylinders), 5, 5)), np.zeros((len(cylinders), 5))
     lever = np.linspace(-1, 1, SAMPLES)
+    powers = np.stack([np.ones(SAMPLES), lever, lever**2], axis=1)
     for view in views:
-        seen = contours(view.camera, cylinders, half[:, None] * lever)
-        shape = seen.gain.shape
-        distance = match(view.edges, seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2), reach).distance.reshape(shape)
-        weight = np.where(np.isnan(distance), 0, (1 - (np.nan_to_num(distance) / (1.2 * reach)) ** 2) ** 2)
-        across = np.einsum("ksi,kpi->ksp", seen.outward, axes)[:, :, None, :]
-        across = np.broadcast_to(across, (*shape, 2))
-        design = np.concatenate([across, lever[:, None] * across, np.ones((*shape, 1))], axis=3)
-        design = np.nan_to_num(seen.gain[..., None] * design).reshape(len(cylinders), -1, 5)
-        weighted = design * weight.reshape(len(cylinders), -1, 1)
-        normal_matrix += np.einsum("knp,knq->kpq", weighted, design)
-        right += np.einsum("knp,kn->kp", weighted, np.nan_to_num(distance).reshape(len(cylinders), -1))
+        seen = smooth_contours(view.camera, cylinders, half[:, None] * np.array([-1.0, 1.0]), (1 + lever) / 2)
+        distance = match(view.edges, seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2), reach).distance.reshape(seen.gain.shape)
+        found = np.isfinite(distance)
+        distance, gain = np.where(found, distance, 0.0), np.where(found, seen.gain, 0.0)
+        weighted = (1 - (distance / (1.2 * reach)) ** 2) ** 2 * gain
+        # along an edge the rows of the design matrix differ by their gain and lever only: their moments are all that is needed
+        by_edge = np.concatenate([np.einsum("ksi,kpi->ksp", seen.outward, axes), np.ones((len(cylinders), 2, 1))], axis=2)[:, :, QUANTITY]
+        by_edge = np.where(found.any(axis=2)[..., None], by_edge, 0.0)
+        moments = ((weighted * gain) @ powers)[:, :, LEVERS[:, None] + LEVERS]
+        normal_matrix += (by_edge[..., None] * by_edge[:, :, None] * moments).sum(axis=1)
+        right += (by_edge * ((weighted * distance) @ powers[:, :2])[:, :, LEVERS]).sum(axis=1)
     largest = normal_matrix.diagonal(axis1=1, axis2=2).max(axis=1)
     normal_matrix += (DAMPING * largest + 1e-12)[:, None, None] * np.eye(5)
     if held:

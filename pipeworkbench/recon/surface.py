@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, spread
 from pipeworkbench.recon.texture import NODES, parabola
-from pipeworkbench.recon.views import View, brightness_at
+from pipeworkbench.recon.views import View, brightness_between
 
 ALONG = np.array([0.04, 0.5, 0.96])  # of the extent; its ends may be another component's
 ACROSS = 0.8  # of the radius to each side; the limb itself is the edges' business
@@ -99,12 +99,9 @@ def _grey(views: Sequence[View], nodes: Array, along: int, across: int) -> NDArr
 
     Only these points are projected: between them a parabola is exact enough.
     """
-    found = np.empty((len(views), len(nodes), along, across), np.float32)
-    for number, view in enumerate(views):
-        corners = view.camera.project(nodes.reshape(-1, 3)).reshape(-1, 3, 3, 2)
-        position = np.einsum("ai,kijc,bj->kabc", parabola(along), corners, parabola(across), optimize=True)
-        found[number] = brightness_at(view, position, view.camera.sees(position.reshape(-1, 2)).reshape(position.shape[:3]))
-    return found
+    weights = np.kron(parabola(along), parabola(across)).T.astype(np.float32)
+    grey = [brightness_between(view, nodes.reshape(len(nodes), len(NODES) ** 2, 3), weights) for view in views]
+    return np.array(grey).reshape(len(views), len(nodes), along, across)
 
 
 def _correlations(grey: NDArray[np.float32]) -> Array:

@@ -9,6 +9,7 @@ correlation says nothing, and the likelihood ratio is built so that it then stay
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -17,7 +18,8 @@ from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders, spread
-from pipeworkbench.recon.views import View, brightness_at
+from pipeworkbench.recon.interpolation import interpolation
+from pipeworkbench.recon.views import View, brightness_between
 
 NODES = np.array([-1.0, 0.0, 1.0])  # where a surface is projected, along and across; between them a parabola is exact to 0.2 px
 MARGIN = 0.97  # of the length: the ends of the clicked part may lie on a seam
@@ -71,8 +73,8 @@ def texture(views: Sequence[View], reference: int, cylinders: Cylinders, extents
             continue
         other, other_norm = _patches(view, surface, settings)
         with np.errstate(invalid="ignore", divide="ignore"):
-            correlation = np.einsum("kpsqt,kpsqt->kpq", own, other) / (own_norm * other_norm)
-        result[number] = _log_ratio(correlation, settings).mean(axis=(1, 2))
+            correlation = np.einsum("kpi,kpi->kp", own, other) / (own_norm * other_norm)
+        result[number] = _log_ratio(correlation, settings).mean(axis=1)
     return result
 
 
@@ -104,26 +106,34 @@ def _control_points(cylinders: Cylinders, extents: Array, origin: Array, setting
 
 
 def _patches(view: View, surface: Array, settings: TextureSettings) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return the brightness of patches (k, p, s, q, t) about a straight line along the axis, and its norm (k, p, q).
+    """Return the brightness of patches (k, p, n) but for straight lines along the axis, and its norm (k, p).
 
-    Subtracting the line leaves out the shading across, which moves with the camera, also where an axis is
-    a little askew.
+    Without the lines the shading across is left out, which moves with the camera, also where an axis is
+    a little askew. A sample that is not in the image makes its patch unknown.
     """
-    nodes = view.camera.project(surface.reshape(-1, 3)).reshape(-1, 3, 3, 2)
-    where = np.einsum("ai,kijc,bj->kabc", parabola(settings.along), nodes, parabola(settings.across), optimize=True)
-    # a sample that is not in the image makes its patch unknown
-    inside = view.camera.sees(where.reshape(-1, 2)).reshape(where.shape[:3])
+    weights, without_lines = _sampling(settings)
+    grey = brightness_between(view, surface.reshape(len(surface), len(NODES) ** 2, 3), weights)
     rows, columns = settings.patches
-    grey = brightness_at(view, where, inside)
-    patches = grey.reshape(len(surface), rows, settings.along // rows, columns, settings.across // columns)
-    line = np.linspace(-1, 1, patches.shape[2])
-    line /= np.linalg.norm(line)
-    patches -= patches.mean(axis=2, keepdims=True)
-    patches -= np.einsum("kpsqt,s->kpqt", patches, line)[:, :, None] * line[:, None, None]
-    return patches, np.asarray(np.sqrt(np.einsum("kpsqt,kpsqt->kpq", patches, patches)))
+    patches = (grey.reshape(-1, len(without_lines)) @ without_lines).reshape(len(surface), rows * columns, -1)
+    return patches, np.asarray(np.sqrt(np.einsum("kpi,kpi->kp", patches, patches)))
+
+
+@functools.cache
+def _sampling(settings: TextureSettings) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return weights (9, n) from control points to samples, patch by patch and line by line along the axis; and what leaves lines out.
+
+    The latter (s, s - 2) takes the brightness of a patch's s samples along the axis to its components in an
+    orthonormal basis of all that is neither constant nor linear: correlations are the same in it.
+    """
+    rows, columns = settings.patches
+    along = parabola(settings.along).reshape(rows, -1, len(NODES))
+    across = parabola(settings.across).reshape(columns, -1, len(NODES))
+    weights = np.einsum("psi,qtj->ijpqts", along, across).reshape(len(NODES) ** 2, -1)
+    line = np.linspace(-1, 1, along.shape[1])
+    basis, _ = np.linalg.qr(np.stack([np.ones_like(line), line], axis=1), mode="complete")
+    return weights.astype(np.float32), basis[:, 2:].astype(np.float32)
 
 
 def parabola(count: int) -> Array:
     """Return weights (count, 3) that interpolate values at NODES to evenly spaced places from -1 to 1."""
-    x = np.linspace(-1, 1, count)
-    return np.stack([x * (x - 1) / 2, 1 - x**2, x * (x + 1) / 2], axis=1)
+    return interpolation(NODES, np.linspace(-1, 1, count)).T

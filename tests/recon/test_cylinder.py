@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from pipeworkbench.recon.camera import Camera, OpenCVInterior, PhotogrammetricInterior
-from pipeworkbench.recon.cylinder import Cylinder, Cylinders, contour, contours, edge_lines, perpendicular_axes
+from pipeworkbench.recon.cylinder import Cylinder, Cylinders, contour, contours, edge_lines, perpendicular_axes, smooth_contours
 
 INTERIORS = (
     OpenCVInterior(1280, 960, 1800.0, 1810.0, 650.0, 470.0, ()),
@@ -156,3 +156,29 @@ def test_many_cylinders_look_like_each_by_itself():
         for name in ("position", "normal", "gain", "outward"):
             assert getattr(alone, name)[0] == pytest.approx(getattr(together, name)[row], nan_ok=True, abs=1e-9)
     assert len(many[np.array([True, False, True, False, False])]) == 2
+
+
+@given(scenes())
+def test_contours_through_few_nodes_are_those_of_all_samples(scene):
+    camera, cylinder = scene
+    # as long in the image as what is clicked, a few hundred pixels
+    half = min(3 * cylinder.radius, 0.1 * float(np.linalg.norm(cylinder.point - camera.projection_centre)))
+    fractions = np.linspace(0, 1, 21)
+    smooth = smooth_contours(camera, cylinder.as_many(), np.array([[-half, half]]), fractions)
+    exact = contour(camera, cylinder, half * (2 * fractions - 1))
+    known = np.isfinite(smooth.position[..., 0]) & np.isfinite(exact.position[..., 0])
+    assume(known.any())
+    across = np.einsum("ksni,ksni->ksn", smooth.position - exact.position, exact.normal)
+    assert np.abs(across[known]).max() < 0.01
+    assert smooth.normal[known] == pytest.approx(exact.normal[known], abs=1e-3)
+    assert smooth.gain[known] == pytest.approx(exact.gain[known], rel=1e-2)
+
+
+def test_contours_that_leave_the_field_are_followed_to_the_border():
+    camera = Camera("level", INTERIORS[1], np.eye(3), np.zeros(3))
+    cylinder = Cylinder(np.array([0.0, 0.0, 3000.0]), np.array([1.0, 0.0, 0.0]), 50.0)
+    fractions = np.linspace(0, 1, 80)
+    smooth = smooth_contours(camera, cylinder.as_many(), np.array([[0.0, 4000.0]]), fractions)
+    exact = contour(camera, cylinder, 4000.0 * fractions)
+    assert np.array_equal(smooth.position, exact.position, equal_nan=True)
+    assert 0.1 < np.isfinite(smooth.position[..., 0]).mean() < 0.5

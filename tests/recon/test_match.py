@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from test_edges import SIZE as SIZE_OF_STEP
 from test_edges import step_image
 
-from pipeworkbench.recon.edges import EdgeMap, detect_edges
-from pipeworkbench.recon.match import match, quality, robust_quality
+from pipeworkbench.recon.edges import EdgeMap, coarse_directions, detect_edges
+from pipeworkbench.recon.match import match, nearest_rows, quality, robust_quality
 
 SIZE = 100
 
@@ -185,3 +185,21 @@ def test_samples_in_many_chunks_are_matched_like_one_by_one():
         alone = match(edges, positions[row : row + 1], normals[row : row + 1], 7.0)
         assert np.array_equal(alone.distance, together.distance[row : row + 1], equal_nan=True)
         assert alone.edge[0] == together.edge[row]
+
+
+@given(st.floats(-180, 180), st.floats(-90, 90))
+def test_coarse_directions_differ_by_the_angle_of_either_sign(angle_deg, turn_deg):
+    first, second = (coarse_directions(np.cos([angle]), np.sin([angle])) for angle in np.radians([angle_deg, angle_deg + turn_deg]))
+    opposite = coarse_directions(-np.cos(np.radians([angle_deg])), -np.sin(np.radians([angle_deg])))
+    assert (opposite - first).view(np.int8)[0] in (-2, 0, 2)
+    difference = int((second - first).view(np.int8)[0])
+    assert difference % 2 == 0
+    assert min(abs(difference - 256 * turn_deg / 180 + whole) for whole in (-256, 0, 256)) <= 2.0 + 1e-6
+
+
+def test_nearest_rows_are_one_for_each_sample():
+    sample, distance = np.array([1, 1, 1, 4, 7, 7]), np.array([2.0, -0.5, 0.5, 3.0, -1.0, 1.5])
+    rows = nearest_rows(sample, distance)
+    assert sample[rows].tolist() == [1, 4, 7]
+    assert np.abs(distance[rows]).tolist() == [0.5, 3.0, 1.0]
+    assert len(nearest_rows(sample[:0], distance[:0])) == 0
