@@ -8,6 +8,7 @@ Lengths are millimetres in the frame the pipeline names. Frozen dataclasses; the
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 import math
 from dataclasses import dataclass, field
@@ -44,13 +45,14 @@ class Component:
 
     ``quality`` is Eq. 4's q in pixels; ``sigma_position`` the standard deviations of the component's
     middle in mm along the frame's axes; ``verified`` the weakest source grade of its standard
-    dimensions (2 two independent sources or more, 1 one, 0 none).
+    dimensions (2 two independent sources or more, 1 one, 0 none). It is hollow where its ``wall_thickness`` (mm) is known.
     """
 
     kind: ClassVar[str] = ""
 
     id: str
     outer_diameter: Positive
+    wall_thickness: Positive | None = None
     dn: Annotated[int, Gt(0)] | None = None
     standard: str | None = None
     pick: Annotated[int, Ge(0)] | None = None
@@ -63,6 +65,15 @@ class Component:
     verified: Literal[0, 1, 2] | None = None
     extra: dict[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        if self.wall_thickness is not None and 2 * self.wall_thickness >= self.narrowest_diameter:
+            raise ValueError("the wall is thicker than the radius")
+
+    @property
+    def narrowest_diameter(self) -> float:
+        """The smallest outside diameter (mm) that the wall must fit into."""
+        return self.outer_diameter
+
     @property
     def ports(self) -> tuple[Port, ...]:
         """The component's ends in the order of a joint's port numbers."""
@@ -71,21 +82,19 @@ class Component:
 
 @dataclass(frozen=True, kw_only=True)
 class Pipe(Component):
-    """A straight pipe from ``start`` to ``end`` (mm); hollow where the wall thickness is known."""
+    """A straight pipe from ``start`` to ``end`` (mm)."""
 
     kind: ClassVar[str] = "pipe"
 
     start: Vector
     end: Vector
-    wall_thickness: Positive | None = None
     sigma_outer_diameter: NotNegative | None = None
     approximate: bool = False
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if math.dist(self.start, self.end) == 0:
             raise ValueError("start and end are the same point")
-        if self.wall_thickness is not None and 2 * self.wall_thickness >= self.outer_diameter:
-            raise ValueError("the wall is thicker than the radius")
 
     @property
     def length(self) -> float:
@@ -112,6 +121,11 @@ class Elbow(Component):
     bend_type: Literal["2D", "3D", "5D"] | None = None
 
     @property
+    def length(self) -> float:
+        """Length of the bent axis in mm."""
+        return math.radians(self.angle_deg) * self.bend_radius
+
+    @property
     def ports(self) -> tuple[Port, ...]:
         """Start and end."""
         return _port(self.intersection, self.start, self.outer_diameter), _port(self.intersection, self.end, self.outer_diameter)
@@ -122,7 +136,9 @@ class Flange(Component):
     """A flange; ``axis`` points out of the sealing face, whose centre is ``face`` (mm).
 
     ``D`` and ``C`` are the plate's diameter and thickness, ``length`` reaches from the face to the weld end;
-    ``neck_diameter`` is the neck's where it leaves the plate, the pipe's where it is not known.
+    ``neck_diameter`` is the neck's where it leaves the plate, the pipe's where it is not known; ``neck_straight``
+    the length of the neck's straight part at the weld end. ``K`` is the diameter of the bolt circle, ``L`` of a bolt
+    hole, ``bolts`` their number. The raised face is a part of ``C``. Letters are those of EN 1092-1, lengths mm.
     """
 
     kind: ClassVar[str] = "flange"
@@ -135,7 +151,22 @@ class Flange(Component):
     C: Positive
     length: Positive
     neck_diameter: Positive | None = None
+    neck_straight: NotNegative | None = None
+    K: Positive | None = None
+    L: Positive | None = None
+    bolts: Annotated[int, Gt(0)] | None = None
+    raised_face_diameter: Positive | None = None
+    raised_face_height: NotNegative | None = None
     equivalents: tuple[dict[str, Any], ...] = ()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.K is not None and self.K + (self.L or 0) >= self.D:
+            raise ValueError("the bolt holes reach over the plate's rim (K + L is not smaller than D)")
+        if self.raised_face_diameter is not None and self.raised_face_diameter > self.D:
+            raise ValueError("the raised face is wider than the plate")
+        if self.raised_face_height is not None and self.raised_face_height >= self.C:
+            raise ValueError("the raised face is as high as the plate is thick")
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -167,6 +198,16 @@ class Tee(Component):
     tee_type: Literal["tee", "set-on"] = "tee"
 
     @property
+    def length(self) -> float:
+        """Length of the run in mm."""
+        return math.dist(self.start, self.end)
+
+    @property
+    def narrowest_diameter(self) -> float:
+        """The smaller of run and branch (mm)."""
+        return min(self.outer_diameter, self.branch_diameter)
+
+    @property
     def ports(self) -> tuple[Port, ...]:
         """Start and end of the run, end of the branch."""
         return (
@@ -190,6 +231,16 @@ class Reducer(Component):
     axis: Vector
     end_diameter: Positive
     reducer_type: Literal["concentric", "eccentric"] = "concentric"
+
+    @property
+    def length(self) -> float:
+        """Distance of both ends along the axis in mm."""
+        return sum((b - a) * c for a, b, c in zip(self.start, self.end, self.axis, strict=True))
+
+    @property
+    def narrowest_diameter(self) -> float:
+        """The smaller end's (mm)."""
+        return min(self.outer_diameter, self.end_diameter)
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -240,6 +291,8 @@ class StationPose:
 
 AnyComponent = Pipe | Elbow | Flange | Tee | Reducer | Cap
 _KINDS: dict[str, type[AnyComponent]] = {kind.kind: kind for kind in (Pipe, Elbow, Flange, Tee, Reducer, Cap)}
+_POINTS = ("start", "end", "intersection", "branch_end", "face")
+_DIRECTIONS = ("axis",)
 _PIPELINE_KEYS = {"schema", "length_unit", "frame", "components", "joints", "stations", "sigma0"}
 _IDENTITY: Matrix = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
@@ -322,6 +375,19 @@ class Pipeline:
         )
 
 
+def moved(component: AnyComponent, b_from_a: Matrix) -> AnyComponent:
+    """Return a component of frame a in frame b, for the 4 x 4 motion from a to b; its sigmas stay along the axes of a."""
+
+    def turned(vector: Vector, shift: int) -> Vector:
+        x, y, z = (sum(row[k] * vector[k] for k in range(3)) + shift * row[3] for row in b_from_a[:3])
+        return x, y, z
+
+    names = {f.name for f in dataclasses.fields(component)}
+    changes: dict[str, Any] = {name: turned(getattr(component, name), 1) for name in _POINTS if name in names}
+    changes |= {name: turned(getattr(component, name), 0) for name in _DIRECTIONS if name in names}
+    return dataclasses.replace(component, **changes)
+
+
 def _port(inside: Vector, point: Vector, diameter: float) -> Port:
     """Return the port at ``point`` that looks away from another point of the component's axis."""
     length = math.dist(inside, point) or math.nan
@@ -352,14 +418,20 @@ def _kind_of(item: Any, source: object, index: int) -> type[AnyComponent]:
 def _from_dict(kind: type[Any], item: Any, source: object, location: tuple[str | int, ...]) -> Any:
     if not isinstance(item, dict):
         raise InputError(source, key_path(location), "is not a JSON object", "correct this value")
-    from pydantic import TypeAdapter
-
     names = {f.name for f in dataclasses.fields(kind)} - {"extra"}
     known = {k: v for k, v in item.items() if k in names}
-    made = check(TypeAdapter(kind), known, source, location)
+    made = check(_adapter(kind), known, source, location)  # type: ignore[arg-type]  # classes are hashable
     if issubclass(kind, Component):
         names.add("kind")
     return dataclasses.replace(made, extra={k: v for k, v in item.items() if k not in names})
+
+
+@functools.cache
+def _adapter(kind: type[Any]) -> Any:
+    """Return pydantic's checks of a dataclass: making them takes longer than a check."""
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(kind)
 
 
 def _refuse_repeated_ids(components: tuple[AnyComponent, ...], source: object) -> None:

@@ -10,6 +10,8 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from pipeworkbench.pipeline import Pipeline
+
 ROOT = Path(__file__).resolve().parent.parent
 Change = Callable[[dict[str, Any]], object]
 
@@ -31,6 +33,12 @@ def shared() -> Path:
     if not folder.is_dir():
         pytest.skip("the folder 'shared' with scenes and standards is not beside the repository")
     return folder
+
+
+@pytest.fixture(scope="session")
+def everything() -> Pipeline:
+    """A pipeline with one of every kind of component, joined."""
+    return Pipeline.read(ROOT / "tests" / "data" / "one_of_everything.json")
 
 
 def link_or_copy(source: Path, target: Path) -> None:

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.pipeline import SCHEMA, Cap, Elbow, Flange, Pipe, Pipeline, Reducer, Tee
+from pipeworkbench.pipeline import SCHEMA, Cap, Elbow, Flange, Pipe, Pipeline, Reducer, Tee, moved
 
 PIPE = {"kind": "pipe", "id": "P1", "start": [0.0, 3000.0, 0.0], "end": [300.0, 3400.0, 0.0], "outer_diameter": 48.3, "wall_thickness": 2.6, "dn": 40}
 ELBOW = {
@@ -34,6 +34,13 @@ FLANGE = {
     "D": 150.0,
     "C": 18.0,
     "length": 45.0,
+    "neck_diameter": 64.0,
+    "neck_straight": 7.0,
+    "K": 110.0,
+    "L": 18.0,
+    "bolts": 4,
+    "raised_face_diameter": 88.0,
+    "raised_face_height": 3.0,
     "outer_diameter": 48.3,
     "equivalents": [{"standard": "DIN 2633", "flange_type": "11", "pn": 16}],
 }
@@ -130,6 +137,24 @@ def test_ports_lie_at_the_ends_and_look_outwards():
     flange = pipeline.components[2]
     assert flange.ports[1].point == pytest.approx((45.0, 0.0, 0.0))
     assert Pipeline.from_dict(complete() | {"components": [FLANGE | {"flange_type": "05"}], "joints": []}).components[0].ports == flange.ports[:1]
+
+
+def test_lengths_run_along_the_axes():
+    lengths = [component.length for component in Pipeline.from_dict(complete()).components]
+    assert lengths == pytest.approx([500.0, 57.0 * math.pi / 2, 45.0, 152.0, 76.0, 38.0])
+
+
+def test_moved_components_keep_their_shape_and_their_ports_move_along():
+    # a quarter turn about z, then a shift
+    motion = ((0.0, -1.0, 0.0, 100.0), (1.0, 0.0, 0.0, 200.0), (0.0, 0.0, 1.0, 300.0), (0.0, 0.0, 0.0, 1.0))
+    for component in Pipeline.from_dict(complete()).components:
+        there = moved(component, motion)
+        assert (there.id, there.length) == (component.id, pytest.approx(component.length))
+        for port, found in zip(component.ports, there.ports, strict=True):
+            x, y, z = port.point
+            a, b, c = port.direction
+            assert found.point == pytest.approx((100 - y, 200 + x, 300 + z))
+            assert found.direction == pytest.approx((-b, a, c))
 
 
 def test_a_branch_is_a_tees_third_port():
@@ -313,6 +338,28 @@ def test_wall_thicker_than_the_radius_is_refused(wall):
     error = refused(data)
     assert error.key.startswith("components[0]")
     assert "wall" in error.problem
+
+
+@pytest.mark.parametrize(
+    ("component", "wall"),
+    [(1, 24.2), (2, 24.2), (3, 16.9), (4, 24.2), (5, 30.2)],
+)
+def test_wall_must_fit_into_every_end_of_a_fitting(component, wall):
+    data = complete()
+    data["components"][component]["wall_thickness"] = wall
+    assert "wall" in refused(data).problem
+    data["components"][component]["wall_thickness"] = wall - 0.2
+    assert Pipeline.from_dict(data).components[component].wall_thickness == wall - 0.2
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [({"K": 140.0}, "bolt holes"), ({"raised_face_diameter": 151.0}, "raised face"), ({"raised_face_height": 18.0}, "raised face")],
+)
+def test_flange_whose_dimensions_contradict_each_other_is_refused(changes, said):
+    data = complete()
+    data["components"][2] |= changes
+    assert said in refused(data).problem
 
 
 def test_pipe_without_length_is_refused():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Export: the document's pipes, or the selected ones, to IFC, STEP, JSON, CSV or a picture."""
+"""Export: the document's components, or the selected ones, to IFC, STEP, JSON, CSV or a picture."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ FILTERS = (
 
 
 class Export(Command):
-    """Asks for a file and writes the pipes to it."""
+    """Asks for a file and writes the components to it."""
 
     name = "PipeWB_Export"
     menu_text = "Export"
-    tooltip = "Export the pipes (all, or those selected) as IFC, STEP, JSON, CSV or as a picture"
+    tooltip = "Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV or as a picture"
     icon = "export.svg"
 
     def IsActive(self) -> bool:  # FreeCAD's name
@@ -35,19 +35,19 @@ class Export(Command):
 
     def run(self) -> None:
         """Ask for the file and write it."""
-        from pipeworkbench.features.document import pipes_in
+        from pipeworkbench.features.document import components_in
         from pipeworkbench.gui.dialogs import ask_save
 
         document = FreeCAD.ActiveDocument
-        pipes = pipes_in(document)
-        selected = [obj for obj in FreeCADGui.Selection.getSelection() if obj in pipes]
-        path = ask_save("Export pipes", ";;".join(FILTERS), f"{document.Label}.ifc")
+        components = components_in(document)
+        selected = [obj for obj in FreeCADGui.Selection.getSelection() if obj in components]
+        path = ask_save("Export pipes and fittings", ";;".join(FILTERS), f"{document.Label}.ifc")
         if path is not None:
             export(document, path, selected or None)
 
 
 def export(document: Any, path: Path, objects: Iterable[Any] | None = None) -> None:
-    """Write a document's pipes (or those among ``objects``) in the format of the path's ending."""
+    """Write a document's components (or those among ``objects``) in the format of the path's ending."""
     from pipeworkbench.exports.writers import Result, check_paths, write
     from pipeworkbench.features.document import pipeline_of, stations_in
     from pipeworkbench.features.station import station_of

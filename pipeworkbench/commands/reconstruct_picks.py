@@ -38,8 +38,8 @@ class ReconstructPicks(Command):
 
 
 def reconstruct_picks(obj: Any, path: Path, progress: Callable[[str, int, int], None] = lambda text, done, total: None) -> list[Any]:  # noqa: ARG005
-    """Reconstruct the picks of a file in a station object's photographs; return the pipe objects."""
-    from pipeworkbench.features.document import add_pipeline
+    """Reconstruct the picks of a file in a station object's photographs; return the components' objects."""
+    from pipeworkbench.features.document import add_pipeline, connections_in
     from pipeworkbench.features.station import station_of
     from pipeworkbench.gui.view_providers import show
     from pipeworkbench.recon.picks import read_picks
@@ -49,15 +49,15 @@ def reconstruct_picks(obj: Any, path: Path, progress: Callable[[str, int, int], 
     picks = read_picks(path, station)
     found = reconstruct(station, picks, progress=progress)
     with transaction(obj.Document, "Reconstruct Picks"):
-        pipes = add_pipeline(obj.Document, found.pipeline)
-        for pipe in pipes:
-            show(pipe)
-    FreeCAD.Console.PrintMessage(f"Station {station.name}: {len(pipes)} pipes reconstructed\n")
+        components = add_pipeline(obj.Document, found.pipeline)
+        for made in (*components, *connections_in(obj.Document).values()):
+            show(made)
+    FreeCAD.Console.PrintMessage(f"Station {station.name}: {len(components)} components reconstructed\n")
     if found.failed_picks:
         FreeCAD.Console.PrintWarning(f"No pipe fits the images at the picks {', '.join(map(str, found.failed_picks))}\n")
     if found.skipped_picks:
         FreeCAD.Console.PrintWarning(f"{len(found.skipped_picks)} flange picks were left out: flanges are not reconstructed yet\n")
-    return pipes
+    return components
 
 
 def _chosen_station(document: Any) -> Any:

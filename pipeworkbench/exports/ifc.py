@@ -1,20 +1,27 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""IFC4: pipes as IfcPipeSegment with analytic, hollow extrusions, in millimetres."""
+"""IFC4: pipes as IfcPipeSegment, everything else as IfcPipeFitting, in millimetres.
+
+IFC4 names what a fitting does, not what it is: an elbow is a BEND, a tee a JUNCTION, a reducer a TRANSITION. A flange
+is a CONNECTOR, which joins two pipes (the enumeration has no flange); a cap and a blind flange, which close a pipe's
+end, are an OBSTRUCTION. What it is stands in ObjectType.
+"""
 
 from __future__ import annotations
 
 import time
 import uuid
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pipeworkbench import __version__
 from pipeworkbench.errors import MissingPackageError
+from pipeworkbench.exports.ifc_properties import property_sets
+from pipeworkbench.exports.ifc_shapes import Shapes
+from pipeworkbench.exports.kinds import COLOURS, designation
 from pipeworkbench.files import written_whole
-from pipeworkbench.pipeline import Pipe, Pipeline
-from pipeworkbench.recon.cylinder import perpendicular_axes
+from pipeworkbench.pipeline import BLIND_FLANGE, AnyComponent, Cap, Elbow, Flange, Pipe, Pipeline, Reducer, Tee
+from pipeworkbench.solids import Frame, frame_of
 
 if TYPE_CHECKING:
     import ifcopenshell
@@ -41,7 +48,7 @@ def ifc_model(pipeline: Pipeline, name: str = "pipeline.ifc") -> ifcopenshell.fi
     _header(file, name)
     builder = _Builder(file, pipeline.frame)
     storey, body, axis = builder.skeleton()
-    products = [builder.pipe(pipe, storey, body, axis) for pipe in pipeline.pipes]
+    products = [builder.product(component, storey, body, axis) for component in pipeline.components]
     if products:
         builder.root("IfcRelContainedInSpatialStructure", "contained", RelatedElements=products, RelatingStructure=storey)
     return file
@@ -59,7 +66,8 @@ class _Builder:
 
     def __init__(self, file: ifcopenshell.file, project: str) -> None:
         self.file, self.project = file, project
-        self.origin = self._point((0.0, 0.0, 0.0))
+        self.shapes = Shapes(file)
+        self.styles: dict[type[AnyComponent], Any] = {}
         self.history = self._owner_history()
 
     def add(self, kind: str, **attributes: Any) -> Any:
@@ -81,6 +89,7 @@ class _Builder:
                 self.add("IfcSIUnit", UnitType="AREAUNIT", Name="SQUARE_METRE"),
                 self.add("IfcSIUnit", UnitType="VOLUMEUNIT", Name="CUBIC_METRE"),
                 self.add("IfcSIUnit", UnitType="PLANEANGLEUNIT", Name="RADIAN"),
+                self.add("IfcSIUnit", UnitType="PRESSUREUNIT", Name="PASCAL"),
             ],
         )
         model = self.add(
@@ -88,7 +97,7 @@ class _Builder:
             ContextType="Model",
             CoordinateSpaceDimension=3,
             Precision=1e-5,
-            WorldCoordinateSystem=self._axes(self.origin),
+            WorldCoordinateSystem=self.shapes.axes(),
         )
         body, axis = (
             self.add(
@@ -103,87 +112,66 @@ class _Builder:
         project = self.root("IfcProject", "project", Name=self.project, RepresentationContexts=[model], UnitsInContext=units)
         parent, placement = project, None
         for kind, name in (("IfcSite", "Site"), ("IfcBuilding", "Building"), ("IfcBuildingStorey", "Storey")):
-            placement = self.add("IfcLocalPlacement", PlacementRelTo=placement, RelativePlacement=self._axes(self.origin))
+            placement = self.add("IfcLocalPlacement", PlacementRelTo=placement, RelativePlacement=self.shapes.axes())
             child = self.root(kind, name, Name=name, ObjectPlacement=placement, CompositionType="ELEMENT")
             self.root("IfcRelAggregates", name, RelatingObject=parent, RelatedObjects=[child])
             parent = child
         return parent, body, axis
 
-    def pipe(self, pipe: Pipe, storey: Any, body: Any, axis: Any) -> Any:
-        """Add a pipe segment, extruded along its local +z, with its axis and properties."""
-        start, end = np.array(pipe.start), np.array(pipe.end)
-        direction = (end - start) / pipe.length
-        placement = self.add(
-            "IfcLocalPlacement",
-            PlacementRelTo=storey.ObjectPlacement,
-            RelativePlacement=self._axes(self._point(pipe.start), direction, perpendicular_axes(direction)[0]),
-        )
-        solid = self.add(
-            "IfcExtrudedAreaSolid",
-            SweptArea=self._profile(pipe),
-            Position=self._axes(self.origin),
-            ExtrudedDirection=self._direction((0.0, 0.0, 1.0)),
-            Depth=pipe.length,
-        )
-        line = self.add("IfcPolyline", Points=[self.origin, self._point((0.0, 0.0, pipe.length))])
-        shape = self.add(
-            "IfcProductDefinitionShape",
-            Representations=[
+    def product(self, component: AnyComponent, storey: Any, body: Any, axis: Any) -> Any:
+        """Add a component, modelled in its own axes, with its place, colour and properties."""
+        frame = frame_of(component)
+        placement = self.add("IfcLocalPlacement", PlacementRelTo=storey.ObjectPlacement, RelativePlacement=self._place(frame))
+        kind, items = self.shapes.body(component, frame)
+        for item in items:
+            self.add("IfcStyledItem", Item=item, Styles=[self._style(type(component))])
+        representations = [
+            self.add("IfcShapeRepresentation", ContextOfItems=body, RepresentationIdentifier="Body", RepresentationType=kind, Items=items)
+        ]
+        if isinstance(component, Pipe):
+            line = self.shapes.line(component.length)
+            representations.insert(
+                0,
                 self.add("IfcShapeRepresentation", ContextOfItems=axis, RepresentationIdentifier="Axis", RepresentationType="Curve3D", Items=[line]),
-                self.add(
-                    "IfcShapeRepresentation", ContextOfItems=body, RepresentationIdentifier="Body", RepresentationType="SweptSolid", Items=[solid]
-                ),
-            ],
-        )
-        size = f"DN {pipe.dn}" if pipe.dn else f"{pipe.outer_diameter:g} mm"
-        segment = self.root(
-            "IfcPipeSegment",
-            pipe.id,
-            Name=pipe.id,
-            Description=f"Pipe {size}",
-            ObjectType=f"Pipe {size}",
+            )
+        made = self.root(
+            "IfcPipeSegment" if isinstance(component, Pipe) else "IfcPipeFitting",
+            component.id,
+            Name=component.id,
+            Description=designation(component),
+            ObjectType=designation(component),
             ObjectPlacement=placement,
-            Representation=shape,
-            Tag=pipe.id,
-            PredefinedType="RIGIDSEGMENT",
+            Representation=self.add("IfcProductDefinitionShape", Representations=representations),
+            Tag=component.id,
+            PredefinedType=predefined_type(component),
         )
-        self._properties(segment, pipe)
-        return segment
+        for name, values in property_sets(component).items():
+            self._properties(made, component.id, name, values)
+        return made
 
-    def _profile(self, pipe: Pipe) -> Any:
-        common = {"ProfileType": "AREA", "Position": self._axes_2d(), "Radius": pipe.outer_diameter / 2}
-        if pipe.wall_thickness is None:  # not known: a full profile is honest, an invented wall is not
-            return self.add("IfcCircleProfileDef", **common)
-        return self.add("IfcCircleHollowProfileDef", WallThickness=pipe.wall_thickness, **common)
+    def _properties(self, product: Any, key: str, name: str, values: Mapping[str, tuple[str, Any]]) -> None:
+        properties = [
+            self._enumerated(label, value)
+            if kind == "enumerated"
+            else self.add("IfcPropertySingleValue", Name=label, NominalValue=self.file.create_entity(kind, value))
+            for label, (kind, value) in values.items()
+        ]
+        pset = self.root("IfcPropertySet", f"{key}/{name}", Name=name, HasProperties=properties)
+        self.root("IfcRelDefinesByProperties", f"{key}/{name}", RelatedObjects=[product], RelatingPropertyDefinition=pset)
 
-    def _properties(self, segment: Any, pipe: Pipe) -> None:
-        dimensions = {
-            "NominalDiameter": ("IfcPositiveLengthMeasure", pipe.dn),
-            "OuterDiameter": ("IfcPositiveLengthMeasure", pipe.outer_diameter),
-            "InnerDiameter": ("IfcPositiveLengthMeasure", pipe.wall_thickness and round(pipe.outer_diameter - 2 * pipe.wall_thickness, 6)),
-            "Length": ("IfcPositiveLengthMeasure", pipe.length),
-        }
-        sigma = pipe.sigma_position or (None, None, None)
-        measurement = {
-            "Standard": ("IfcLabel", pipe.standard),
-            "VerifiedSources": ("IfcInteger", pipe.verified),
-            "QualityPixel": ("IfcReal", pipe.quality),
-            "SigmaX": ("IfcNonNegativeLengthMeasure", sigma[0]),
-            "SigmaY": ("IfcNonNegativeLengthMeasure", sigma[1]),
-            "SigmaZ": ("IfcNonNegativeLengthMeasure", sigma[2]),
-            "SigmaDirectionDegrees": ("IfcReal", pipe.sigma_direction_deg),
-            "LevelOfAccuracy": ("IfcLabel", pipe.loa),
-            "Approximate": ("IfcBoolean", pipe.approximate),
-            "Station": ("IfcLabel", pipe.station),
-        }
-        for name, values in (("Pset_PipeSegmentTypeCommon", dimensions), ("PipeWorkbench_Measurement", measurement)):
-            properties = [
-                self.add("IfcPropertySingleValue", Name=key, NominalValue=self.file.create_entity(kind, value))
-                for key, (kind, value) in values.items()
-                if value is not None
-            ]
-            pset = self.root("IfcPropertySet", f"{pipe.id}/{name}", Name=name, HasProperties=properties)
-            self.root("IfcRelDefinesByProperties", f"{pipe.id}/{name}", RelatedObjects=[segment], RelatingPropertyDefinition=pset)
+    def _enumerated(self, name: str, value: str) -> Any:
+        return self.add("IfcPropertyEnumeratedValue", Name=name, EnumerationValues=[self.file.create_entity("IfcLabel", value)])
+
+    def _style(self, kind: type[AnyComponent]) -> Any:
+        """Return the surface style of a kind of components, which all of that kind share."""
+        if kind not in self.styles:
+            red, green, blue = COLOURS[kind]
+            shading = self.add("IfcSurfaceStyleShading", SurfaceColour=self.add("IfcColourRgb", Red=red, Green=green, Blue=blue))
+            self.styles[kind] = self.add("IfcSurfaceStyle", Name=kind.kind, Side="BOTH", Styles=[shading])
+        return self.styles[kind]
+
+    def _place(self, frame: Frame) -> Any:
+        return self.shapes.axes(frame.origin, frame.z, frame.x)
 
     def _owner_history(self) -> Any:
         now = int(time.time())
@@ -200,19 +188,19 @@ class _Builder:
             "IfcOwnerHistory", OwningUser=person, OwningApplication=application, ChangeAction="ADDED", LastModifiedDate=now, CreationDate=now
         )
 
-    def _point(self, values: tuple[float, ...]) -> Any:
-        return self.add("IfcCartesianPoint", Coordinates=tuple(float(value) for value in values))
 
-    def _direction(self, values: Any) -> Any:
-        return self.add("IfcDirection", DirectionRatios=tuple(float(value) for value in values))
-
-    def _axes(self, location: Any, axis: Any = None, reference: Any = None) -> Any:
-        return self.add(
-            "IfcAxis2Placement3D",
-            Location=location,
-            Axis=None if axis is None else self._direction(axis),
-            RefDirection=None if reference is None else self._direction(reference),
-        )
-
-    def _axes_2d(self) -> Any:
-        return self.add("IfcAxis2Placement2D", Location=self._point((0.0, 0.0)))
+def predefined_type(component: AnyComponent) -> str:
+    """Return the value of IFC4's IfcPipeSegmentTypeEnum or IfcPipeFittingTypeEnum that says what a component does."""
+    match component:
+        case Pipe():
+            return "RIGIDSEGMENT"
+        case Elbow():
+            return "BEND"
+        case Tee():
+            return "JUNCTION"
+        case Reducer():
+            return "TRANSITION"
+        case Flange():
+            return "OBSTRUCTION" if component.flange_type == BLIND_FLANGE else "CONNECTOR"
+        case Cap():
+            return "OBSTRUCTION"

@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.files import written_whole
-from pipeworkbench.pipeline import Pipe, Pipeline
-from pipeworkbench.recon.camera import Array, Camera
-from pipeworkbench.recon.cylinder import Cylinder, contour
+from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Pipeline, Reducer, Tee, moved
+from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.contour import Contour, contour_of
 from pipeworkbench.recon.images import read_image
 from pipeworkbench.recon.station import Station
 
 PICTURE_WIDTH = 1296  # px of each photograph in the picture
-SAMPLES = 200  # along a pipe; its edges are curves where the lens distorts
 SUBPIXEL_BITS = 4  # of OpenCV's fixed-point drawing coordinates
 # red, green, blue; told apart by colour-blind people too (Okabe and Ito), but for the last
 COLOURS = ((86, 180, 233), (230, 159, 0), (0, 158, 115), (240, 228, 66), (213, 94, 0), (204, 121, 167), (120, 190, 255))
@@ -55,7 +54,7 @@ def write_picture(pipeline: Pipeline, stations: Sequence[Station], path: Path) -
 
 
 def annotated(station: Station, index: int, pipeline: Pipeline, level_from_frame: Array) -> NDArray[np.uint8]:
-    """Return a camera's photograph (height, width, 3) BGR with the contours of all pipes."""
+    """Return a camera's photograph (height, width, 3) BGR with the visible contours of all components."""
     import cv2
 
     camera = station.cameras[index]
@@ -65,36 +64,63 @@ def annotated(station: Station, index: int, pipeline: Pipeline, level_from_frame
     scale = min(1.0, PICTURE_WIDTH / grey.shape[1])
     small = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     canvas = cv2.cvtColor(small, cv2.COLOR_GRAY2BGR)
-    for number, pipe in enumerate(pipeline.pipes):
+    components = [_in_level(component, level_from_frame) for component in pipeline.components]
+    contour = contour_of(camera, components)
+    for number in range(len(components)):
         red, green, blue = COLOURS[number % len(COLOURS)]
-        _draw_pipe(canvas, camera, pipe, level_from_frame, scale, (blue, green, red))
+        _draw_contour(canvas, contour[contour.component == number], scale, (blue, green, red))
+    # the labels last, so that no line runs through them
+    for number, component in enumerate(components):
+        seen = contour.position[(contour.component == number) & contour.visible]
+        if len(seen):
+            _write_label(canvas, _label(component), seen.mean(axis=0) * scale)
     cv2.putText(canvas, f"{station.name} / {camera.name}", (12, 30), cv2.FONT_HERSHEY_SIMPLEX, 0.8, (255, 255, 255), 2, cv2.LINE_AA)
     return np.asarray(canvas, np.uint8)
 
 
-def _draw_pipe(canvas: Any, camera: Camera, pipe: Pipe, level_from_frame: Array, scale: float, colour: tuple[int, int, int]) -> None:
+def _in_level(component: AnyComponent, level_from_frame: Array) -> AnyComponent:
+    rows: list[list[float]] = level_from_frame.tolist()
+    return moved(component, tuple((row[0], row[1], row[2], row[3]) for row in rows))
+
+
+def _draw_contour(canvas: Any, contour: Contour, scale: float, colour: tuple[int, int, int]) -> None:
+    """Draw the visible parts of a component's curves: a line breaks where samples are hidden."""
     import cv2
 
-    ends = np.array([pipe.start, pipe.end]) @ level_from_frame[:3, :3].T + level_from_frame[:3, 3]
-    direction = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    cylinder = Cylinder(ends[0], direction, pipe.outer_diameter / 2)
-    position = contour(camera, cylinder, np.linspace(0, pipe.length, SAMPLES)).position[0]
+    # pixel centres at integers on both scales: shift by half a pixel before and after scaling
+    drawn = ((contour.position + 0.5) * scale - 0.5) * 2**SUBPIXEL_BITS
+    rows = np.flatnonzero(contour.visible)
+    breaks = (np.diff(rows) > 1) | (np.diff(contour.curve[rows]) != 0)
+    lines = np.split(rows, np.flatnonzero(breaks) + 1)
+    # a pipe's ends are where its two edges end
+    at_end = [rows[np.isclose(contour.parameter[rows], end)] for end in (0.0, 1.0)]
+    lines += [ends for ends in at_end if len(ends) == 2 and {contour.names[curve] for curve in contour.curve[ends]} == {"pipe"}]
+    for line in lines:
+        if len(line) > 1:
+            cv2.polylines(canvas, [np.rint(drawn[line]).astype(np.int32)], False, colour, 2, cv2.LINE_AA, SUBPIXEL_BITS)
 
-    def polyline(points: Array) -> None:
-        # pixel centres at integers on both scales: shift by half a pixel before and after scaling
-        drawn = ((points + 0.5) * scale - 0.5) * 2**SUBPIXEL_BITS
-        known = np.isfinite(drawn).all(axis=1)
-        for part in np.split(np.flatnonzero(known), np.flatnonzero(np.diff(np.flatnonzero(known)) > 1) + 1):
-            if len(part) > 1:
-                cv2.polylines(canvas, [np.rint(drawn[part]).astype(np.int32)], False, colour, 2, cv2.LINE_AA, SUBPIXEL_BITS)
 
-    for side in position:
-        polyline(side)
-    polyline(position[:, 0])
-    polyline(position[:, -1])
-    middle = np.nanmean(position.reshape(-1, 2), axis=0) if np.isfinite(position).any() else None
-    if middle is not None:
-        label = f"{'' if pipe.pick is None else pipe.pick}: {'DN ' + str(pipe.dn) if pipe.dn else f'{pipe.outer_diameter:.1f}'}"
-        at = (int(middle[0] * scale) - 30, int(middle[1] * scale) + 6)
-        cv2.putText(canvas, label, at, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (0, 0, 0), 4, cv2.LINE_AA)
-        cv2.putText(canvas, label, at, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (255, 255, 255), 1, cv2.LINE_AA)
+def _write_label(canvas: Any, text: str, middle: Array) -> None:
+    import cv2
+
+    at = (round(float(middle[0])) - 30, round(float(middle[1])) + 6)
+    cv2.putText(canvas, text, at, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (0, 0, 0), 4, cv2.LINE_AA)
+    cv2.putText(canvas, text, at, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (255, 255, 255), 1, cv2.LINE_AA)
+
+
+def _label(component: AnyComponent) -> str:
+    """Return a few letters that tell which component this is: there is little room."""
+    match component:
+        case Pipe():
+            size = f"DN {component.dn}" if component.dn else f"{component.outer_diameter:.1f}"
+            return size if component.pick is None else f"{component.pick}: {size}"
+        case Elbow():
+            return component.bend_type or f"R {component.bend_radius:.0f}"
+        case Flange():
+            return f"{component.flange_type} PN {component.pn:g}"
+        case Tee():
+            return "T"
+        case Reducer():
+            return f"> {component.end_diameter:.1f}"
+        case Cap():
+            return "cap"

@@ -54,9 +54,14 @@ class Feature:
     def onDocumentRestored(self, obj: Any) -> None:  # FreeCAD's name
         """Bring an object of an older version up to date."""
         self.Type = self.type_name
+        version = getattr(obj, "SchemaVersion", 1)
         self.add_properties(obj)
+        self.migrate(obj, version)
         for hook in restored_hooks:
             hook(obj)
+
+    def migrate(self, obj: Any, version: int) -> None:
+        """Turn what an older version saved into what this one reads; the properties it lacked are there already."""
 
     def dumps(self) -> dict[str, str]:
         """Return what is saved beside the properties (FreeCAD 0.21 and newer)."""
@@ -72,8 +77,9 @@ class Feature:
 
 
 def is_restoring(obj: Any) -> bool:
-    """Tell whether the object's document is being opened: then nothing may be derived from changes."""
-    return "Restore" in obj.State or bool(getattr(obj.Document, "Restoring", False))
+    """Tell whether the object's document is being opened, or undone: then nothing may be derived from changes."""
+    document = obj.Document
+    return "Restore" in obj.State or bool(getattr(document, "Restoring", False)) or bool(getattr(document, "Transacting", False))
 
 
 def is_kind(obj: Any, feature: type[Feature]) -> bool:

@@ -8,9 +8,11 @@ from typing import Any
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.base import is_kind
-from pipeworkbench.features.pipe import PipeFeature, add_pipe, pipe_of, set_pipe
+from pipeworkbench.features.component import component_of, set_component
+from pipeworkbench.features.connections import ConnectionsFeature, data_of, is_needed, set_connections
+from pipeworkbench.features.kinds import FEATURES, add_component, is_component
 from pipeworkbench.features.station import StationFeature, add_station_object
-from pipeworkbench.pipeline import Pipeline
+from pipeworkbench.pipeline import AnyComponent, Pipeline
 from pipeworkbench.recon.station import Station
 
 
@@ -19,9 +21,14 @@ def stations_in(document: Any) -> list[Any]:
     return [obj for obj in document.Objects if is_kind(obj, StationFeature)]
 
 
-def pipes_in(document: Any) -> list[Any]:
-    """Return the pipe objects of a document."""
-    return [obj for obj in document.Objects if is_kind(obj, PipeFeature)]
+def components_in(document: Any) -> list[Any]:
+    """Return the component objects of a document."""
+    return [obj for obj in document.Objects if is_component(obj)]
+
+
+def connections_in(document: Any) -> dict[str, Any]:
+    """Return the objects that hold joints and stations, by the name of their frame."""
+    return {obj.FrameName: obj for obj in document.Objects if is_kind(obj, ConnectionsFeature)}
 
 
 def add_station(document: Any, station: Station) -> Any:
@@ -38,40 +45,66 @@ def add_station(document: Any, station: Station) -> Any:
 
 
 def add_pipeline(document: Any, pipeline: Pipeline) -> list[Any]:
-    """Add a pipeline's pipes, each into its station's group, and return their objects.
+    """Add a pipeline's components, each into its station's group, and return their objects.
 
-    A pipe that the document holds already (the same pick, reconstructed again) is brought up to date
+    A component that the document holds already (the same pick, reconstructed again) is brought up to date
     in place, so that what depends on it stays; one that the user fixed is left alone.
-    """
-    groups = {obj.StationName: obj for obj in stations_in(document)}
-    known = {obj.ComponentId: obj for obj in pipes_in(document)}
-    objects = []
-    for pipe in pipeline.pipes:
-        obj = known.get(pipe.id)
-        if obj is None:
-            obj = add_pipe(document, pipe)
-            group = groups.get(pipe.station or pipeline.frame)
-            if group is not None:
-                group.addObject(obj)
-        elif not obj.Fixed:
-            set_pipe(obj, pipe)
-        objects.append(obj)
-    return objects
-
-
-def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline:
-    """Return the document's pipes (or those among ``objects``) as a pipeline.
 
     Raises
     ------
     InputError
-        Where there is no pipe.
+        Where the document has a component of another kind under the same name.
     """
-    pipes = [obj for obj in (document.Objects if objects is None else objects) if is_kind(obj, PipeFeature)]
-    if not pipes:
-        raise InputError(document.Label, "", "the document has no pipes", "reconstruct some picks first")
+    groups = {obj.StationName: obj for obj in stations_in(document)}
+    known = {obj.ComponentId: obj for obj in components_in(document)}
+    objects = []
+    for component in pipeline.components:
+        obj = known.get(component.id)
+        if obj is None:
+            obj = add_component(document, component)
+            group = groups.get(component.station or pipeline.frame)
+            if group is not None:
+                group.addObject(obj)
+        elif not is_kind(obj, FEATURES[type(component)]):
+            raise InputError(document.Label, obj.Label, f"is not a {component.kind}, as '{component.id}' now is", "delete or rename the object")
+        elif not obj.Fixed:
+            set_component(obj, component)
+        objects.append(obj)
+    connections = connections_in(document).get(pipeline.frame)
+    if connections is None and is_needed(pipeline):
+        connections = document.addObject("App::FeaturePython", "Connections")
+        ConnectionsFeature(connections)
+    if connections is not None:
+        set_connections(connections, pipeline)
+    return objects
+
+
+def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline:
+    """Return the document's components (or those among ``objects``) as a pipeline, with the joints between them.
+
+    Raises
+    ------
+    InputError
+        Where there is no component, or where they come from stations that are not merged.
+    """
+    chosen = [obj for obj in (document.Objects if objects is None else objects) if is_component(obj)]
+    if not chosen:
+        raise InputError(document.Label, "", "the document has no pipes or fittings", "reconstruct some picks first")
+    components = tuple(component_of(obj) for obj in chosen)
+    measured_by = {component.station for component in components if component.station}
+    merged = [data for data in map(data_of, connections_in(document).values()) if measured_by <= {data["frame"], *data["stations"]}]
+    if merged:
+        return _joined(document, merged[0], components)
+    if len(measured_by) > 1:
+        raise InputError(document.Label, "", "the components come from several stations that are not merged", "select those of one station")
     stations = stations_in(document)
-    if len({obj.StationName for obj in pipes if obj.StationName}) > 1:
-        raise InputError(document.Label, "", "the pipes come from several stations that are not merged", "select the pipes of one station")
-    frame = pipes[0].StationName or (stations[0].StationName if stations else document.Label)
-    return Pipeline.of_station(frame, tuple(pipe_of(obj) for obj in pipes))
+    frame = next(iter(measured_by), stations[0].StationName if stations else document.Label)
+    return Pipeline.of_station(frame, components)
+
+
+def _joined(document: Any, data: dict[str, Any], components: tuple[AnyComponent, ...]) -> Pipeline:
+    """Return components with what the document knows beyond them; joints to what is not among them are left out."""
+    held = {component.id for component in components}
+    bare = Pipeline(frame=data["frame"], components=components).to_dict()["components"]
+    joints = [joint for joint in data["joints"] if {joint["a"], joint["b"]} <= held]
+    return Pipeline.from_dict(data | {"components": bare, "joints": joints}, source=document.Label)

@@ -5,12 +5,19 @@ from __future__ import annotations
 
 from typing import Any
 
+from pipeworkbench.exports.kinds import COLOURS
 from pipeworkbench.features.base import Feature, is_kind
+from pipeworkbench.features.cap import CapFeature
+from pipeworkbench.features.component import ComponentFeature
+from pipeworkbench.features.connections import ConnectionsFeature
+from pipeworkbench.features.elbow import ElbowFeature
+from pipeworkbench.features.flange import FlangeFeature
 from pipeworkbench.features.pipe import PipeFeature
+from pipeworkbench.features.reducer import ReducerFeature
 from pipeworkbench.features.station import StationFeature
+from pipeworkbench.features.tee import TeeFeature
 from pipeworkbench.files import package_folder
 
-PIPE_COLOUR = (0.55, 0.63, 0.70)
 APPROXIMATE_COLOUR = (0.90, 0.62, 0.0)
 
 
@@ -43,13 +50,58 @@ class PipeView(ViewProvider):
     icon = "pipe.svg"
 
 
+class ElbowView(ViewProvider):
+    """An elbow in the tree."""
+
+    icon = "elbow.svg"
+
+
+class FlangeView(ViewProvider):
+    """A flange in the tree."""
+
+    icon = "flange.svg"
+
+
+class TeeView(ViewProvider):
+    """A tee in the tree."""
+
+    icon = "tee.svg"
+
+
+class ReducerView(ViewProvider):
+    """A reducer in the tree."""
+
+    icon = "reducer.svg"
+
+
+class CapView(ViewProvider):
+    """A cap in the tree."""
+
+    icon = "cap.svg"
+
+
+class ConnectionsView(ViewProvider):
+    """Joints and stations in the tree."""
+
+    icon = "connections.svg"
+
+
 class StationView(ViewProvider):
     """A station in the tree."""
 
     icon = "station.svg"
 
 
-VIEWS: dict[type[Feature], type[ViewProvider]] = {PipeFeature: PipeView, StationFeature: StationView}
+VIEWS: dict[type[Feature], type[ViewProvider]] = {
+    PipeFeature: PipeView,
+    ElbowFeature: ElbowView,
+    FlangeFeature: FlangeView,
+    TeeFeature: TeeView,
+    ReducerFeature: ReducerView,
+    CapFeature: CapView,
+    ConnectionsFeature: ConnectionsView,
+    StationFeature: StationView,
+}
 
 
 def show(obj: Any) -> None:
@@ -61,5 +113,5 @@ def show(obj: Any) -> None:
         view(obj.ViewObject)
         # FreeCAD hides what was written without a window
         obj.ViewObject.Visibility = True
-    if is_kind(obj, PipeFeature):
-        obj.ViewObject.ShapeColor = APPROXIMATE_COLOUR if obj.Approximate else PIPE_COLOUR
+    if isinstance(obj.Proxy, ComponentFeature):
+        obj.ViewObject.ShapeColor = APPROXIMATE_COLOUR if getattr(obj, "Approximate", False) else COLOURS[obj.Proxy.kind]

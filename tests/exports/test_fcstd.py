@@ -50,6 +50,19 @@ def test_program_that_does_nothing_is_reported_and_leaves_nothing(tmp_path, monk
 
 @pytest.mark.slow
 @pytest.mark.skipif(FREECAD is None, reason="FreeCAD's command-line program is not installed")
+def test_freecad_writes_a_document_with_every_kind_of_component_and_the_joints(tmp_path, everything):
+    path = tmp_path / "all.FCStd"
+    write_fcstd(everything, path)
+    with zipfile.ZipFile(path) as document:
+        text = document.read("Document.xml").decode("utf-8")
+    for component in everything.components:
+        assert f'type="Part::FeaturePython" name="{component.kind.capitalize()}' in text
+        assert f'"{component.id} DN' in text
+    assert "T1 (2) - P2 (0)" in text
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(FREECAD is None, reason="FreeCAD's command-line program is not installed")
 def test_freecad_writes_a_document_with_every_pipe(tmp_path, sample):
     path = tmp_path / "pipes.FCStd"
     write_fcstd(PIPELINE, path, [read_station(sample)])

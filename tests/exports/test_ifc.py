@@ -4,6 +4,8 @@
 import gc
 
 import ifcopenshell
+import ifcopenshell.geom
+import ifcopenshell.util.element
 import ifcopenshell.util.placement
 import ifcopenshell.util.unit
 import ifcopenshell.validate
@@ -14,7 +16,8 @@ from hypothesis import strategies as st
 from measured import DN40
 
 from pipeworkbench.exports.ifc import ifc_model, write_ifc
-from pipeworkbench.pipeline import Pipe, Pipeline
+from pipeworkbench.pipeline import Cap, Pipe, Pipeline
+from pipeworkbench.solids import component_solid
 
 UNKNOWN_WALL = Pipe(id="A-P01", start=(0.0, 4000.0, 0.0), end=(0.0, 4000.0, -700.0), outer_diameter=95.0)
 PIPELINE = Pipeline.of_station("A", (DN40, UNKNOWN_WALL))
@@ -182,3 +185,121 @@ def test_pipeline_without_pipes_is_valid_too(tmp_path):
     ifcopenshell.validate.validate(str(path), logger)
     assert logger.statements == []
     assert [entry.name for entry in tmp_path.iterdir()] == ["empty.ifc"]
+
+
+# ---------------------------------------------------------------- other kinds than pipes
+
+
+@pytest.fixture(scope="module")
+def all_written(everything, tmp_path_factory):
+    path = tmp_path_factory.mktemp("ifc") / "all.ifc"
+    write_ifc(everything, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def all_model(all_written):
+    return ifcopenshell.open(str(all_written))
+
+
+@pytest.fixture(scope="module")
+def products(all_model):  # entities live as long as their file
+    return {item.Name: item for kind in ("IfcPipeSegment", "IfcPipeFitting") for item in all_model.by_type(kind)}
+
+
+def meshed(item):
+    """Return the vertices (n, 3) mm in the project's frame and the triangles (m, 3) of a product."""
+    settings = ifcopenshell.geom.settings()
+    for name, value in (("use-world-coords", True), ("mesher-linear-deflection", 1e-5), ("mesher-angular-deflection", 0.05)):
+        settings.set(name, value)
+    geometry = ifcopenshell.geom.create_shape(settings, item).geometry
+    return np.array(geometry.verts).reshape(-1, 3) * 1000, np.array(geometry.faces).reshape(-1, 3)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")  # the validator leaves files open
+def test_validator_finds_nothing_in_all_kinds(all_written):
+    logger = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(str(all_written), logger, express_rules=True)
+    gc.collect()
+    assert logger.statements == []
+
+
+def test_fittings_say_what_they_do_and_what_they_are(products, everything):
+    assert set(products) == {component.id for component in everything.components}
+    said = {name: (item.is_a(), item.PredefinedType, item.ObjectType.split(" DN")[0]) for name, item in products.items()}
+    assert said["P1"] == ("IfcPipeSegment", "RIGIDSEGMENT", "Pipe")
+    assert said["E1"] == ("IfcPipeFitting", "BEND", "Elbow")
+    assert said["T1"] == ("IfcPipeFitting", "JUNCTION", "Tee")
+    assert said["R1"] == ("IfcPipeFitting", "TRANSITION", "Reducer")
+    assert said["F1"] == ("IfcPipeFitting", "CONNECTOR", "Flange")
+    assert said["F2"] == ("IfcPipeFitting", "OBSTRUCTION", "Blind flange")
+    assert said["C1"] == ("IfcPipeFitting", "OBSTRUCTION", "Cap")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["E1", "E2", "F1", "F2", "F3", "T1", "R1", "R2", "C1"])
+def test_geometry_is_that_of_the_solids(products, everything, name):
+    (component,) = (component for component in everything.components if component.id == name)
+    vertices, triangles = meshed(products[name])
+    solid = component_solid(component)
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    # a faceted surface lies inside the curved one
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(solid.Volume(), rel=4e-3)
+    box = solid.BoundingBox()
+    assert vertices.min(axis=0) == pytest.approx((box.xmin, box.ymin, box.zmin), abs=0.02)
+    assert vertices.max(axis=0) == pytest.approx((box.xmax, box.ymax, box.zmax), abs=0.02)
+
+
+@pytest.mark.parametrize("name", ["T1", "R1", "C1"])
+def test_facets_are_closed(products, name):
+    facets = body(products[name])
+    assert facets.is_a("IfcTriangulatedFaceSet")
+    assert facets.Closed
+    edges = [(face[i], face[(i + 1) % 3]) for face in facets.CoordIndex for i in range(3)]
+    assert len(set(edges)) == len(edges)  # each edge once in each direction
+    assert {(b, a) for a, b in edges} == set(edges)
+
+
+def test_elbow_is_an_analytic_bend_of_a_hollow_section(products):
+    solid = body(products["E2"])
+    assert solid.is_a("IfcRevolvedAreaSolid")
+    assert solid.Angle == pytest.approx(np.pi / 4)
+    assert solid.Axis.Location.Coordinates == pytest.approx((57, 0, 0))
+    assert (solid.SweptArea.Radius, solid.SweptArea.WallThickness) == pytest.approx((24.15, 2.6))
+
+
+def test_bolt_holes_are_voids_not_boolean_operations(products):
+    (shape,) = products["F1"].Representation.Representations
+    assert shape.RepresentationType == "SweptSolid"
+    (plate,) = (item for item in shape.Items if item.is_a("IfcExtrudedAreaSolid"))
+    assert len(plate.SweptArea.InnerCurves) == 4 + 1  # and the bore
+
+
+def test_properties_of_fittings(products):
+    sets = {name: ifcopenshell.util.element.get_psets(products[name]) for name in ("E1", "F1", "T1", "R1")}
+    assert sets["E1"]["Pset_PipeFittingTypeBend"]["BendAngle"] == pytest.approx(np.pi / 2)
+    assert sets["E1"]["Pset_PipeFittingTypeBend"]["BendRadius"] == 57
+    assert sets["F1"]["Pset_PipeFittingTypeCommon"]["PressureClass"] == pytest.approx(16e5)
+    dimensions = sets["F1"]["PipeWorkbench_Dimensions"]
+    assert (dimensions["FlangeDiameter"], dimensions["NumberOfBoltholes"], dimensions["NominalDiameter"]) == (165, 4, 50)
+    assert dimensions["SameDimensionsAs"] == "DIN 2633 type 11 PN 16"
+    assert sets["T1"]["Pset_PipeFittingTypeJunction"]["JunctionType"] == ["TEE"]
+    assert sets["R1"]["PipeWorkbench_Dimensions"]["EndDiameter"] == 48.3
+    for found in sets.values():
+        assert found["Pset_PipeFittingTypeCommon"]["Status"] == ["EXISTING"]
+        assert found["PipeWorkbench_Measurement"]["SigmaY"] == pytest.approx(0.3)
+
+
+def test_fitting_of_which_nothing_but_its_dimensions_is_known_is_valid(tmp_path):
+    cap = Cap(id="C", start=(0.0, 0.0, 0.0), axis=(0.0, 0.0, 1.0), length=38.0, outer_diameter=60.3)
+    path = tmp_path / "cap.ifc"
+    write_ifc(Pipeline(frame="A", components=(cap,)), path)
+    logger = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(str(path), logger)
+    assert logger.statements == []
+
+
+def test_components_of_a_kind_share_their_colour(all_model):
+    assert sorted(style.Name for style in all_model.by_type("IfcSurfaceStyle")) == ["cap", "elbow", "flange", "pipe", "reducer", "tee"]
+    assert all(item.StyledByItem for item in all_model.by_type("IfcSweptAreaSolid") + all_model.by_type("IfcTriangulatedFaceSet"))

@@ -10,7 +10,7 @@ import pytest
 from pipeworkbench.errors import InputError
 from pipeworkbench.exports.pictures import annotated, write_picture
 from pipeworkbench.exports.writers import check_paths
-from pipeworkbench.pipeline import Pipe, Pipeline, StationPose
+from pipeworkbench.pipeline import Elbow, Flange, Pipe, Pipeline, StationPose
 from pipeworkbench.recon.station import read_station
 
 WIDTH, HEIGHT, FOCAL = 320, 240, 400.0
@@ -73,6 +73,40 @@ def test_pipe_of_another_frame_is_drawn_at_the_same_place(station):
 def test_pipe_that_is_not_in_the_photograph_changes_nothing(station, shift):
     away = [tuple(np.add(point, shift).tolist()) for point in (PIPE.start, PIPE.end)]
     assert not drawn(station, 0, Pipeline.of_station("S", (Pipe(id="P", start=away[0], end=away[1], outer_diameter=100.0),))).any()
+
+
+def test_rim_and_bend_are_drawn_where_they_are(station):
+    flange = Flange(
+        id="F", face=(-60.0, 1500.0, 0.0), axis=(0.0, -1.0, 0.0), flange_type="05", pn=16, D=100.0, C=1.0, length=1.0, outer_diameter=40.0
+    )
+    changed = drawn(station, 0, Pipeline.of_station("S", (flange,)))
+    turn = np.linspace(0, 2 * np.pi, 60)
+    # the face looks at the camera: a circle
+    columns = 160 + FOCAL * (-60 + 50 * np.cos(turn)) / 1500
+    rows = 120 - FOCAL * 50 * np.sin(turn) / 1500
+    assert np.mean(changed[np.rint(rows).astype(int), np.rint(columns).astype(int)]) > 0.95
+    elbow = Elbow(
+        id="E", start=(0.0, 2000.0, 0.0), intersection=(100.0, 2000.0, 0.0), end=(100.0, 2000.0, -100.0), angle_deg=90, bend_radius=100.0,
+        outer_diameter=40.0,
+    )  # fmt: skip
+    changed = drawn(station, 0, Pipeline.of_station("S", (elbow,)))
+    turn = np.linspace(0.1, np.pi / 2 - 0.1, 30)
+    columns, rows = 160 + FOCAL * 120 * np.sin(turn) / 2000, 120 + FOCAL * (100 - 120 * np.cos(turn)) / 2000
+    near = [changed[round(v) - 1 : round(v) + 2, round(u) - 1 : round(u) + 2].any() for u, v in zip(columns, rows, strict=True)]
+    assert all(near)
+
+
+def test_hidden_parts_are_not_drawn(station):
+    # its longer part is above: its label, at the middle of what is seen, is not before the other pipe
+    behind = Pipe(id="B", start=(150.0, 2300.0, -150.0), end=(150.0, 2300.0, 400.0), outer_diameter=40.0)
+    before = Pipe(id="P", start=(-200.0, 2000.0, 0.0), end=(200.0, 2000.0, 0.0), outer_diameter=100.0)
+    edge = 160 + round(FOCAL * 170 / 2300)
+    alone = drawn(station, 0, Pipeline.of_station("S", (behind,)))
+    assert alone[95:140, edge - 2 : edge + 3].any(axis=1).all()
+    both = drawn(station, 0, Pipeline.of_station("S", (behind, before)))
+    assert not both[113:127, edge - 2 : edge + 3].any()
+    assert both[95:105, edge - 2 : edge + 3].any(axis=1).all()
+    assert both[134:140, edge - 2 : edge + 3].any(axis=1).all()
 
 
 def test_picture_has_a_panel_for_each_camera(station, tmp_path):

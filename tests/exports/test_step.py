@@ -7,8 +7,10 @@ import cadquery
 import pytest
 
 from pipeworkbench.errors import InputError
+from pipeworkbench.exports.kinds import COLOURS
 from pipeworkbench.exports.step import write_step
 from pipeworkbench.pipeline import Elbow, Pipe, Pipeline
+from pipeworkbench.solids import component_solid
 
 HOLLOW = Pipe(id="A-P00", start=(100.0, 3600.0, -50.0), end=(400.0, 3600.0, 350.0), outer_diameter=48.3, wall_thickness=2.6, dn=40)
 MASSIVE = Pipe(id="A-P01", start=(0.0, 4000.0, 0.0), end=(0.0, 4000.0, -700.0), outer_diameter=95.0)
@@ -42,15 +44,27 @@ def test_names_and_the_unit_are_in_the_file(written):
     assert "SI_UNIT(.MILLI.,.METRE.)" in text.replace(" ", "")
 
 
+@pytest.mark.slow
+def test_all_kinds_are_written_with_their_volumes_names_and_colours(everything, tmp_path):
+    path = tmp_path / "all.step"
+    write_step(everything, path)
+    found = cadquery.importers.importStep(str(path)).solids().vals()
+    volumes = sorted(component_solid(component).Volume() for component in everything.components)
+    assert sorted(solid.Volume() for solid in found) == pytest.approx(volumes, rel=1e-5)
+    text = path.read_text(encoding="ascii")
+    assert all(f"'{component.id}'" in text for component in everything.components)
+    assert text.count("COLOUR_RGB(") >= len(COLOURS)
+
+
 def test_pipeline_without_components_is_refused_and_nothing_written(tmp_path):
     with pytest.raises(InputError, match="no components"):
         write_step(Pipeline(frame="A"), tmp_path / "empty.step")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_component_without_a_solid_is_refused_with_its_id(tmp_path):
+def test_component_that_makes_no_solid_is_refused_with_its_id(tmp_path):
     elbow = Elbow(
-        id="E7", start=(0.0, 0.0, 0.0), end=(57.0, 57.0, 0.0), intersection=(57.0, 0.0, 0.0), angle_deg=90.0, bend_radius=57.0, outer_diameter=48.3
+        id="E7", start=(0.0, 0.0, 0.0), end=(57.0, 57.0, 0.0), intersection=(57.0, 0.0, 0.0), angle_deg=90.0, bend_radius=20.0, outer_diameter=48.3
     )
     with pytest.raises(InputError, match="E7"):
         write_step(Pipeline(frame="A", components=(HOLLOW, elbow)), tmp_path / "elbow.step")

@@ -2,6 +2,7 @@
 """Tables: the CSV as a spreadsheet reads it and the rows on the terminal."""
 
 import csv
+import math
 
 import pytest
 from measured import DN40
@@ -58,6 +59,50 @@ def test_verified_dimensions_are_not_marked():
 def test_what_is_not_known_is_left_empty(rows):
     for column in ("pick", "station", "standard", "dn", "wall_thickness_mm", "verified_sources", "quality_px", "sigma_y_mm", "loa"):
         assert rows[2][column] == ""
+
+
+@pytest.fixture
+def all_rows(everything, tmp_path):
+    path = tmp_path / "all.csv"
+    write_csv(everything, path)
+    with path.open(encoding="utf-8", newline="") as file:
+        return {row["id"]: row for row in csv.DictReader(file)}
+
+
+def test_every_component_is_a_row_with_its_kind_and_ports(everything, all_rows):
+    assert list(all_rows) == [component.id for component in everything.components]
+    for component in everything.components:
+        row = all_rows[component.id]
+        assert row["kind"] == component.kind
+        assert [float(row[f"start_{axis}_mm"]) for axis in "xyz"] == pytest.approx(component.ports[0].point, abs=1e-3)
+        if len(component.ports) > 1:
+            assert [float(row[f"end_{axis}_mm"]) for axis in "xyz"] == pytest.approx(component.ports[1].point, abs=1e-3)
+        else:
+            assert row["end_x_mm"] == ""
+
+
+def test_key_dimensions_of_fittings_are_in_the_table(all_rows):
+    elbow, flange, tee, reducer = (all_rows[name] for name in ("E2", "F1", "T1", "R1"))
+    assert (elbow["type"], float(elbow["bend_angle_deg"]), float(elbow["bend_radius_mm"])) == ("3D", 45, 57)
+    assert float(elbow["length_mm"]) == pytest.approx(57 * math.pi / 4, abs=1e-3)
+    assert (flange["type"], float(flange["pn"]), flange["bolts"]) == ("11", 16, "4")
+    assert [float(flange[f"{letter}_mm"]) for letter in "DCKL"] == [165, 18, 125, 18]
+    assert (tee["type"], float(tee["second_diameter_mm"])) == ("tee", 33.7)
+    assert (reducer["type"], float(reducer["second_diameter_mm"]), float(reducer["length_mm"])) == ("eccentric", 48.3, 76)
+    assert all_rows["P1"]["type"] == ""
+
+
+def test_remarks_name_what_cannot_be_told_apart_and_what_is_not_verified(everything, all_rows):
+    assert all_rows["F1"]["remarks"] == "same dimensions as DIN 2633 type 11 PN 16"
+    assert "not verified" in all_rows["F2"]["remarks"]
+    assert all_rows["P4"]["remarks"] == "approximate"
+    said = {component.id: terminal_row(component)[-1] for component in everything.components}
+    assert said["F1"] == "Flange DN 50, type 11, PN 16, same dimensions as DIN 2633 type 11 PN 16"
+    assert said["F2"].startswith("Blind flange DN 50")
+    assert said["E1"] == "Elbow DN 40, 90 deg, 3D (R 57 mm)"
+    assert said["R1"] == "Reducer DN 50 to 48.3 mm, eccentric"
+    assert said["C1"] == "Cap DN 20"
+    assert all(len(terminal_row(component)) == len(TERMINAL_COLUMNS) for component in everything.components)
 
 
 def test_terminal_row_has_the_rounded_figures():

@@ -7,8 +7,9 @@ import FreeCAD
 import pytest
 
 from pipeworkbench.errors import PipeWorkbenchError
-from pipeworkbench.features.document import add_pipeline, pipeline_of, pipes_in
-from pipeworkbench.features.pipe import add_pipe, pipe_of
+from pipeworkbench.features.component import component_of
+from pipeworkbench.features.document import add_pipeline, components_in, pipeline_of
+from pipeworkbench.features.kinds import add_component
 from pipeworkbench.pipeline import Pipe, Pipeline
 
 DN40 = Pipe(
@@ -32,7 +33,7 @@ def document():
 
 
 def test_pipe_is_hollow_and_lies_between_its_ends(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     document.recompute()
     assert obj.Shape.isValid()
     assert obj.Shape.Volume == pytest.approx(volume(48.3, 2.6, 500), rel=1e-6)
@@ -41,23 +42,23 @@ def test_pipe_is_hollow_and_lies_between_its_ends(document):
 
 
 def test_solid_follows_the_properties(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     obj.Length = "1.2 m"
     obj.WallThickness = 5
     document.recompute()
     assert obj.Shape.Volume == pytest.approx(volume(48.3, 5, 1200), rel=1e-6)
-    assert pipe_of(obj).length == pytest.approx(1200)
+    assert component_of(obj).length == pytest.approx(1200)
 
 
 def test_unknown_wall_makes_a_massive_pipe(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     obj.WallThickness = 0
     document.recompute()
     assert obj.Shape.Volume == pytest.approx(math.pi / 4 * 48.3**2 * 500, rel=1e-6)
 
 
 def test_choosing_a_nominal_diameter_sets_diameter_and_wall(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     obj.NominalDiameter = "DN 100"
     document.recompute()
     assert obj.OutsideDiameter.Value == pytest.approx(114.3)
@@ -66,7 +67,7 @@ def test_choosing_a_nominal_diameter_sets_diameter_and_wall(document):
 
 
 def test_typed_diameter_finds_its_nominal_diameter_or_none(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     obj.OutsideDiameter = 60.3
     assert obj.NominalDiameter == "DN 50"
     obj.OutsideDiameter = 61.7
@@ -75,7 +76,7 @@ def test_typed_diameter_finds_its_nominal_diameter_or_none(document):
 
 
 def test_expression_drives_the_diameter(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     sheet = document.addObject("Spreadsheet::Sheet", "Sheet")
     sheet.set("A1", "=88.9 mm")
     document.recompute()
@@ -87,7 +88,7 @@ def test_expression_drives_the_diameter(document):
 
 
 def test_impossible_wall_is_an_error_of_the_object_not_a_wrong_solid(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     document.recompute()
     obj.WallThickness = 30
     document.recompute()
@@ -95,23 +96,23 @@ def test_impossible_wall_is_an_error_of_the_object_not_a_wrong_solid(document):
 
 
 def test_save_close_reopen_recompute_gives_the_same_document(document, tmp_path):
-    add_pipe(document, DN40)
+    add_component(document, DN40)
     document.recompute()
-    before = [pipe_of(obj) for obj in pipes_in(document)]
-    shape = pipes_in(document)[0].Shape.Volume
+    before = [component_of(obj) for obj in components_in(document)]
+    shape = components_in(document)[0].Shape.Volume
     path = str(tmp_path / "pipes.FCStd")
     document.saveAs(path)
     FreeCAD.closeDocument(document.Name)
     again = FreeCAD.openDocument(path)
-    assert [pipe_of(obj) for obj in pipes_in(again)] == before
+    assert [component_of(obj) for obj in components_in(again)] == before
     again.recompute(None, True)
-    assert [pipe_of(obj) for obj in pipes_in(again)] == before
-    assert pipes_in(again)[0].Shape.Volume == pytest.approx(shape, rel=1e-12)
+    assert [component_of(obj) for obj in components_in(again)] == before
+    assert components_in(again)[0].Shape.Volume == pytest.approx(shape, rel=1e-12)
 
 
 def test_component_survives_the_way_through_a_document(document):
-    obj = add_pipe(document, DN40)
-    back = pipe_of(obj)
+    obj = add_component(document, DN40)
+    back = component_of(obj)
     assert back.start == pytest.approx(DN40.start)
     assert back.end == pytest.approx(DN40.end)
     for name in ("id", "dn", "standard", "verified", "pick", "station", "loa", "extra", "wall_thickness", "quality", "sigma_position"):
@@ -131,12 +132,12 @@ def test_reconstructing_again_updates_in_place_and_leaves_fixed_pipes(document):
 
 def test_undo_takes_a_pipe_back(document):
     document.openTransaction("add")
-    add_pipe(document, DN40)
+    add_component(document, DN40)
     document.commitTransaction()
     document.undo()
-    assert not pipes_in(document)
+    assert not components_in(document)
     document.redo()
-    assert len(pipes_in(document)) == 1
+    assert len(components_in(document)) == 1
 
 
 def test_document_without_pipes_says_so(document):
@@ -145,28 +146,28 @@ def test_document_without_pipes_says_so(document):
 
 
 def test_object_of_an_older_version_gets_what_it_lacks(document, tmp_path):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     obj.removeProperty("Fixed")
     obj.Proxy.onDocumentRestored(obj)
     assert obj.Fixed is False
 
 
 def test_pipe_that_the_user_changed_is_not_exported_as_measured(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     obj.Length = 700
-    changed = pipe_of(obj)
+    changed = component_of(obj)
     assert changed.length == pytest.approx(700)
     assert (changed.quality, changed.sigma_position, changed.loa) == (None, None, None)
 
 
 def test_typed_standard_diameter_brings_its_wall(document):
-    obj = add_pipe(document, DN40)
+    obj = add_component(document, DN40)
     obj.OutsideDiameter = 114.3
     assert obj.WallThickness.Value == pytest.approx(3.6)
 
 
 def test_pipes_of_unmerged_stations_are_not_mixed(document):
-    add_pipe(document, DN40)
-    add_pipe(document, Pipe(**{**vars(DN40), "id": "B-P00", "station": "B"}))
+    add_component(document, DN40)
+    add_component(document, Pipe(**{**vars(DN40), "id": "B-P00", "station": "B"}))
     with pytest.raises(PipeWorkbenchError, match="several stations"):
         pipeline_of(document)

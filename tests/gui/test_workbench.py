@@ -195,3 +195,37 @@ def test_document_written_without_a_window_shows_its_pipes(tmp_path):
         screenshot("headless")
     finally:
         FreeCAD.closeDocument(opened.Name)
+
+
+def test_every_kind_of_component_has_its_place_in_the_tree_and_its_colour(tmp_path):
+    from pipeworkbench.commands.export import export
+    from pipeworkbench.exports.fcstd import write_fcstd
+    from pipeworkbench.exports.kinds import COLOURS
+    from pipeworkbench.features.component import component_of
+    from pipeworkbench.features.document import components_in, connections_in
+    from pipeworkbench.pipeline import Pipeline
+
+    everything = Pipeline.read(ROOT / "tests" / "data" / "one_of_everything.json")
+    path = tmp_path / "everything.FCStd"
+    write_fcstd(everything, path)
+    opened = FreeCAD.openDocument(str(path))
+    try:
+        pump(300)
+        for obj in components_in(opened):
+            component = component_of(obj)
+            assert obj.ViewObject.Visibility
+            assert type(obj.ViewObject.Proxy).__name__ == f"{component.kind.capitalize()}View"
+            if not getattr(component, "approximate", False):
+                assert obj.ViewObject.ShapeColor[:3] == pytest.approx(COLOURS[type(component)], abs=0.01)
+        for obj in (*components_in(opened), *connections_in(opened).values()):
+            assert QtGui.QIcon(obj.ViewObject.Proxy.getIcon()).pixmap(32, 32).toImage().pixelColor(16, 16).alpha() > 0
+        FreeCADGui.ActiveDocument.ActiveView.viewFront()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+        screenshot("everything")
+        FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+        screenshot("everything_isometric")
+        export(opened, tmp_path / "again.json")
+        assert Pipeline.read(tmp_path / "again.json") == everything
+    finally:
+        FreeCAD.closeDocument(opened.Name)

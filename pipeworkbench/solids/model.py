@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Solids of components, made with CadQuery in the component's own axes (``frames``) and put in place."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, Any
+
+from pipeworkbench.errors import InputError, MissingPackageError
+from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
+from pipeworkbench.solids.frames import Frame, bend_angle, frame_of, local_point
+from pipeworkbench.solids.outlines import Outline, dish_height, flange_outline, reducer_outline, refuse_tight_bend
+
+if TYPE_CHECKING:
+    import cadquery
+
+# bolts of EN 1092-1 as fractions of the thread's diameter d (ISO 4014, ISO 4032), rounded: they are drawn, not made
+HEAD_HEIGHT, NUT_HEIGHT, ACROSS_FLATS, PROTRUSION = 0.63, 0.85, 1.5, 0.25
+CLEARANCE_MM = ((12.0, 1.0), (26.0, 2.0), (math.inf, 3.0))  # bolt hole up to this diameter: wider than the bolt by (EN 1092-1)
+GASKET_MM = 2.0  # a common thickness, where nothing says how thick it is
+
+
+def _modeller() -> Any:
+    """Import CadQuery late: it takes seconds and only some steps need it."""
+    try:
+        import cadquery
+    except ImportError:
+        raise MissingPackageError("CadQuery", "Making solids", "pip install 'cadquery>=2.4,<2.9'") from None
+    return cadquery
+
+
+def component_solid(component: AnyComponent) -> cadquery.Solid:
+    """Return a component's solid in the pipeline's frame (mm).
+
+    Raises
+    ------
+    InputError
+        Where the component's dimensions make no solid; names the component.
+    """
+    frame = frame_of(component)
+    return local_solid(component, frame).located(_location(frame))
+
+
+def local_solid(component: AnyComponent, frame: Frame | None = None) -> cadquery.Solid:
+    """Return a component's solid in its own axes (mm), which ``frame_of`` places.
+
+    Raises
+    ------
+    InputError
+        Where the component's dimensions make no solid; names the component.
+    """
+    match component:
+        case Pipe():
+            return straight_pipe(component.outer_diameter, component.wall_thickness, component.length)
+        case Elbow():
+            solid = _elbow(component)
+        case Flange():
+            solid = _flange(component)
+        case Tee():
+            solid = _tee(component, frame or frame_of(component))
+        case Reducer():
+            solid = _reducer(component, frame or frame_of(component))
+        case Cap():
+            solid = _cap(component)
+    if not (solid.isValid() and solid.Volume() > 0):
+        raise InputError(component.id, "", f"these dimensions make no {component.kind}", "correct the component's dimensions")
+    return solid
+
+
+def straight_pipe(outer_diameter: float, wall_thickness: float | None, length: float) -> cadquery.Solid:
+    """Return a pipe from the origin along +z (mm); massive where the wall thickness is not known.
+
+    Raises
+    ------
+    InputError
+        Where the dimensions do not make a pipe.
+    """
+    if not all(math.isfinite(x) and x > 0 for x in (outer_diameter, length)):
+        raise InputError("pipe", "", f"diameter {outer_diameter:g} mm and length {length:g} mm make no pipe", "give positive dimensions")
+    make = _modeller().Solid.makeCylinder
+    body = make(outer_diameter / 2, length)
+    if not wall_thickness:
+        return body
+    inner_radius = outer_diameter / 2 - wall_thickness
+    if not (math.isfinite(wall_thickness) and wall_thickness > 0 and inner_radius > 0):
+        raise InputError("pipe", "wall_thickness", f"{wall_thickness:g} mm does not fit into {outer_diameter:g} mm", "give less than the radius")
+    return _solid_of(body.cut(make(inner_radius, length)))
+
+
+def flange_bolts(flange: Flange, grip: float | None = None) -> cadquery.Compound | None:
+    """Return a flange's bolts in its own axes: hexagon heads behind its back, nuts behind its partner's.
+
+    Parameters
+    ----------
+    flange : Flange
+    grip : float
+        From this flange's back to its partner's in mm; where it is not given, two equal flanges with a gasket.
+
+    Returns
+    -------
+    Compound or None
+        None where bolt circle, hole or number are not known.
+    """
+    if flange.K is None or flange.L is None or flange.bolts is None:
+        return None
+    cq = _modeller()
+    hole = flange.L
+    diameter = hole - next(clearance for limit, clearance in CLEARANCE_MM if hole <= limit)
+    if diameter <= 0:
+        raise InputError(flange.id, "L", f"a hole of {hole:g} mm takes no bolt", "correct the diameter of the bolt holes")
+    grip = 2 * flange.C + GASKET_MM if grip is None else grip
+    back, front = flange.C, flange.C - grip
+    corners = ACROSS_FLATS * diameter * 2 / math.sqrt(3)
+
+    def along_z(bottom: float) -> Any:
+        return cq.Workplane("XY", origin=(0, 0, bottom))
+
+    bolt = (
+        along_z(front - (NUT_HEIGHT + PROTRUSION) * diameter)
+        .circle(diameter / 2)
+        .extrude(grip + (NUT_HEIGHT + PROTRUSION) * diameter)
+        .union(along_z(back).polygon(6, corners).extrude(HEAD_HEIGHT * diameter))
+        .union(along_z(front - NUT_HEIGHT * diameter).polygon(6, corners).extrude(NUT_HEIGHT * diameter))
+        .val()
+    )
+    solids = [_solid_of(bolt.located(cq.Location(cq.Vector(x, y, 0)))) for x, y in bolt_places(flange.K, flange.bolts)]
+    return cq.Compound.makeCompound(solids)
+
+
+def bolt_places(bolt_circle: float, count: int) -> list[tuple[float, float]]:
+    """Return where bolts stand across a flange's axis (mm): equally spaced, none on the x axis, which is the vertical (EN 1092-1)."""
+    turns = [2 * math.pi * (number + 0.5) / count for number in range(count)]
+    return [(bolt_circle / 2 * math.cos(turn), bolt_circle / 2 * math.sin(turn)) for turn in turns]
+
+
+def brep_text(shape: cadquery.Shape) -> str:
+    """Return a shape in Open CASCADE's BREP format, which FreeCAD reads in no time."""
+    buffer = io.BytesIO()
+    shape.exportBrep(buffer)
+    return buffer.getvalue().decode("ascii")
+
+
+def _location(frame: Frame) -> Any:
+    cq = _modeller()
+    return cq.Location(cq.Plane(origin=tuple(frame.origin.tolist()), xDir=tuple(frame.x.tolist()), normal=tuple(frame.z.tolist())))
+
+
+def _solid_of(shape: Any) -> Any:
+    """Return the one solid of a shape that an operation packed into a compound."""
+    solids = shape.Solids()
+    if len(solids) != 1:
+        raise InputError("solid", "", f"the dimensions give {len(solids)} pieces instead of one", "correct the dimensions")
+    return solids[0]
+
+
+def _turned(outline: Outline) -> Any:
+    """Return the solid that an outline makes about the z axis."""
+    return _modeller().Workplane("XZ").polyline(outline).close().revolve(360, (0, 0, 0), (0, 1, 0)).val()
+
+
+def _elbow(elbow: Elbow) -> Any:
+    radius = elbow.outer_diameter / 2
+    refuse_tight_bend(elbow)
+    section = _modeller().Workplane("XY").circle(radius)
+    if elbow.wall_thickness is not None:
+        section = section.circle(radius - elbow.wall_thickness)
+    # about an axis along +y beside the start: z turns towards x
+    return section.revolve(math.degrees(bend_angle(elbow)), (elbow.bend_radius, 0, 0), (elbow.bend_radius, 1, 0)).val()
+
+
+def _flange(flange: Flange) -> Any:
+    body = _turned(flange_outline(flange))
+    if flange.K is None or flange.L is None or flange.bolts is None:
+        return body
+    cq = _modeller()
+    holes = [cq.Solid.makeCylinder(flange.L / 2, flange.C, cq.Vector(x, y, 0)) for x, y in bolt_places(flange.K, flange.bolts)]
+    return _solid_of(body.cut(*holes))
+
+
+def _tee(tee: Tee, frame: Frame) -> Any:
+    """Return run and branch as one body: where the branch is set on, the run cuts it just as well."""
+    cq = _modeller()
+    begin, end = (float(local_point(frame, point)[2]) for point in (tee.start, tee.end))
+    branch_end = local_point(frame, tee.branch_end)
+    reach, direction = math.hypot(*branch_end), cq.Vector(*branch_end.tolist())
+    if not begin < 0 < end:
+        raise InputError(tee.id, "intersection", "does not lie between the ends of the run", "correct the tee's points")
+    if tee.branch_diameter > tee.outer_diameter:
+        raise InputError(tee.id, "branch_diameter", f"{tee.branch_diameter:g} mm is more than the run's", "make the thicker pipe the run")
+    if branch_end[0] <= tee.outer_diameter / 2:
+        raise InputError(tee.id, "branch_end", "lies inside the run", "correct the tee's points")
+
+    def body(inwards: float) -> Any:
+        run = cq.Solid.makeCylinder(tee.outer_diameter / 2 - inwards, end - begin, cq.Vector(0, 0, begin))
+        return run.fuse(cq.Solid.makeCylinder(tee.branch_diameter / 2 - inwards, reach, cq.Vector(), direction)).clean()
+
+    if tee.wall_thickness is None:
+        return _solid_of(body(0))
+    return _solid_of(body(0).cut(body(tee.wall_thickness)))
+
+
+def _reducer(reducer: Reducer, frame: Frame) -> Any:
+    if reducer.length <= 0:
+        raise InputError(reducer.id, "end", "does not lie in the direction of the axis", "correct the reducer's points")
+    offset = float(local_point(frame, reducer.end)[0])
+    if reducer.reducer_type == "concentric":
+        return _turned(reducer_outline(reducer))
+    cq = _modeller()
+
+    def body(inwards: float) -> Any:
+        up = cq.Vector(0, 0, 1)
+        wide = cq.Wire.makeCircle(reducer.outer_diameter / 2 - inwards, cq.Vector(), up)
+        narrow = cq.Wire.makeCircle(reducer.end_diameter / 2 - inwards, cq.Vector(offset, 0, reducer.length), up)
+        return cq.Solid.makeLoft([wide, narrow], ruled=True)
+
+    if reducer.wall_thickness is None:
+        return body(0)
+    return _solid_of(body(0).cut(body(reducer.wall_thickness)))
+
+
+def _cap(cap: Cap) -> Any:
+    """Return a cylinder with an ellipsoidal head; the inner head's half axes are shorter than the outer one's by the wall."""
+    cq = _modeller()
+    height, radius = dish_height(cap), cap.outer_diameter / 2
+    straight = cap.length - height
+    wall = cap.wall_thickness
+    if wall is not None and wall >= height:
+        raise InputError(cap.id, "wall_thickness", f"{wall:g} mm does not fit into a head of {height:g} mm", "give less than the head's height")
+
+    def arc(inwards: float) -> Any:
+        # in the x, z plane between the top and the widest point; about -y the same arc makes a face that STEP loses
+        return cq.Edge.makeEllipse(radius - inwards, height - inwards, (0, 0, straight), (0, 1, 0), (1, 0, 0), 270, 360)
+
+    def line(start: tuple[float, float], end: tuple[float, float]) -> list[Any]:
+        return [] if start == end else [cq.Edge.makeLine(cq.Vector(start[0], 0, start[1]), cq.Vector(end[0], 0, end[1]))]
+
+    inner_radius, inner_top = (0.0, 0.0) if wall is None else (radius - wall, cap.length - wall)
+    edges = [*line((inner_radius, 0), (radius, 0)), *line((radius, 0), (radius, straight)), arc(0), *line((0, cap.length), (0, inner_top))]
+    if wall is not None:
+        edges += [arc(wall), *line((inner_radius, straight), (inner_radius, 0))]
+    section = cq.Wire.assembleEdges(edges)
+    return cq.Solid.revolve(section, [], 360, cq.Vector(0, 0, 0), cq.Vector(0, 0, 1))
