@@ -11,8 +11,6 @@ minutes to hours) and beside it pictures of the failures: photograph, pick, and 
 """
 
 import argparse
-import importlib.util
-import json
 import statistics
 import sys
 import time
@@ -25,17 +23,18 @@ from typing import Any
 import cv2
 import numpy as np
 from brute_force import BruteForceSettings, brute_force
+from scenes import Scene, judge, station_folders
 
 from pipeworkbench.errors import InputError
+from pipeworkbench.recon.candidates import PipeCandidate
 from pipeworkbench.recon.clicks import complete_picks
 from pipeworkbench.recon.cylinder import Cylinder, outlines
 from pipeworkbench.recon.detect import detect
 from pipeworkbench.recon.images import read_image
 from pipeworkbench.recon.lines import INTERRUPTED, detect_lines
-from pipeworkbench.recon.picks import PipePick, read_picks
-from pipeworkbench.recon.pipes import PipeCandidate, from_pick
+from pipeworkbench.recon.picks import PipePick
+from pipeworkbench.recon.pipes import from_pick
 from pipeworkbench.recon.plane_cylinders import cylinder_from_diameter
-from pipeworkbench.recon.station import read_station
 from pipeworkbench.recon.tangent_planes import apparent_pipe
 from pipeworkbench.recon.tangents import SNAPPED_SIGMA_PX, tangents_of
 from pipeworkbench.recon.views import views_of
@@ -51,48 +50,6 @@ PANEL_PX, NARROWEST_PX = 640, 400  # height of a camera's part of a picture, whi
 CAPTION_PX = 36
 SUBPIXEL_BITS = 4  # of drawn coordinates
 GREEN, RED, YELLOW = (80, 220, 80), (60, 60, 255), (0, 255, 255)
-
-
-def judge(folder):
-    """Return the judge as a module."""
-    spec = importlib.util.spec_from_file_location("score", folder / "tools" / "score.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-class Scene:
-    """A station with its truth, in the station's frame."""
-
-    def __init__(self, score, folder):
-        self.score, self.folder = score, folder
-        self.name = f"{folder.parent.name}/{folder.name}"
-        self.station = read_station(folder)
-        self.picks = read_picks(folder / "picks.json", self.station)
-        self.truth_of_pick = [pick.get("truth") for pick in json.loads((folder / "picks.json").read_text(encoding="utf-8"))["picks"]]
-        self.world_from_level = score.world_from_result(str(folder.parent), folder.name)
-        self.pipes = {t["id"]: t for t in json.loads((folder.parent / "truth.json").read_text(encoding="utf-8"))["pipes"]}
-        seen = json.loads((folder / "truth.json").read_text(encoding="utf-8"))["visible_pixels"].values()
-        self.visible = {name for name in self.pipes if sum(view.get(name, 0) > 1500 for view in seen) >= 2}
-
-    def deviation(self, ends, diameter, truth):
-        """Return the judge's deviations of a pipe from a true one."""
-        moved = self.score.move({"start": ends[0], "end": ends[1], "outer_diameter": diameter}, self.world_from_level)
-        return self.score.pipe_dev(moved, self.pipes[truth])
-
-    def nearest(self, ends, diameter):
-        """Return the name of the true pipe that a pipe is nearest to, and its deviations."""
-        every = {name: self.deviation(ends, diameter, name) for name in self.pipes}
-        name = min(every, key=lambda n: every[n]["position"] + 20 * every[n]["direction"] + (1e3 if every[n]["overlap"] < 0.05 else 0))
-        return name, every[name]
-
-    def true_cylinder(self, truth):
-        """Return a true pipe in the station's frame, and its extent along the axis from the cylinder's point, mm."""
-        level_from_world = np.linalg.inv(self.world_from_level)
-        pipe = self.pipes[truth]
-        start, end = (level_from_world[:3, :3] @ np.array(pipe[key]) + level_from_world[:3, 3] for key in ("start", "end"))
-        length = float(np.linalg.norm(end - start))
-        return Cylinder(start, (end - start) / length, pipe["outer_diameter"] / 2), (0.0, length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -311,9 +268,7 @@ def main():
     columns = ("scene", "method", "visible pipes", "found", "recall", "answers", "false", "precision", "s", "s of the processors", "")
     auto = [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
     counts, unpicked, dummy_one, dummy_three = Counter(), {}, [], []
-    for folder in sorted(path.parent for path in options.folder.glob("scenes/*/*/station.json") if (path.parent.parent / "truth.json").is_file()):
-        if options.only and not {folder.parent.name, f"{folder.parent.name}/{folder.name}"} & set(options.only):
-            continue
+    for folder in station_folders(options.folder, options.only):
         scene = Scene(score, folder)
         views = views_of(scene.station)
         answers, seconds = with_picks(scene, views, options.out)

@@ -13,26 +13,30 @@ import logging
 import math
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from pipeworkbench import __version__
 from pipeworkbench.catalogue import using_folder
-from pipeworkbench.errors import InputError, PipeWorkbenchError
+from pipeworkbench.errors import InputError, PipeWorkbenchError, one_line
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from pipeworkbench.pipeline import Pipeline
+    from pipeworkbench.recon.pick_settings import PickSettings
     from pipeworkbench.recon.picks import Picks
-    from pipeworkbench.recon.reconstruct import Reconstruction
-    from pipeworkbench.recon.search import PickSettings
+    from pipeworkbench.recon.reconstruct import Alternative, Reconstruction
     from pipeworkbench.recon.station import Station
 
 SMALLEST_MM, LARGEST_MM, NEAREST_MM = 1.0, 200_000.0, 200.0  # of ranges that make sense
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0}  # in mm
 COMMAND_LINE = "the command line"
 BASES_SHOWN = 5
+REASONS_SHOWN = 3  # in the one line that says that all picks failed
+MOST_LISTED = 6  # alternatives; as many as a pick may name (recon.picks, which is loaded late)
 DONE, BAD_INPUT = 0, 2  # 1 is what Python exits with after an exception nobody expected
 
 
@@ -77,9 +81,11 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("station", metavar="STATION_DIR", type=Path, help="folder with station.json (or that file)")
     command.add_argument("--picks", metavar="FILE", type=Path, help="picks.json; default: the one beside station.json")
     command.add_argument("--auto", action="store_true", help="find the pipes without picks; most, not all of them: look at the .png")
+    command.add_argument("--flanges", action="store_true", help="with --auto: look for flanges along the pipes, too; takes some seconds more")
     command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output, may be repeated")
     command.add_argument("--working-range", metavar=("NEAR", "FAR"), nargs=2, type=float, help="distances of the pipes from the rig in mm")
     command.add_argument("--diameters", metavar=("FROM", "TO"), nargs=2, type=float, help="outside diameters to consider in mm")
+    command.add_argument("--alternatives", metavar="N", type=int, default=1, help=f"list up to N ranked answers per pick (at most {MOST_LISTED})")
     command.add_argument("--quiet", action="store_true", help="no table, no progress, no warnings")
     command.add_argument("--json", action="store_true", help="print a machine-readable summary instead of the table")
     _add_catalogue(command)
@@ -123,8 +129,7 @@ def _reconstruct(options: argparse.Namespace) -> int:
 
     began = time.perf_counter()
     check_paths(options.out)
-    if options.auto and options.picks is not None:
-        raise InputError(COMMAND_LINE, "--auto", "finds the pipes without picks, and --picks names some", "give one of the two")
+    _check_together(options)
     station = read_station(options.station)
     picks_file = options.picks or station.source.parent / "picks.json"
     check_paths(options.out, inputs=(station.source, picks_file, *station.images))
@@ -132,12 +137,14 @@ def _reconstruct(options: argparse.Namespace) -> int:
     settings = _settings_of(options, picks)
     show = not options.quiet and not options.json
     with _Progress(show=show) as progress:
-        found = reconstruct_without_picks(station, settings, progress) if picks is None else reconstruct(station, picks, settings, progress)
-    if not found.pipeline.components:
-        what = "the calibration belongs to the photographs and that working range and diameters hold the pipes"
         if picks is None:
-            raise InputError(station.source, "cameras", "no pipe was found in the photographs", f"check that {what}, or pick the pipes")
-        raise InputError(picks_file, "picks", "no pipe fits the images", f"check that the picks are on pipe edges, that {what}")
+            found = reconstruct_without_picks(station, settings, progress, flanges=options.flanges)
+        else:
+            found = reconstruct(station, picks, settings, progress, options.alternatives)
+    if not found.pipeline.components:
+        if options.json:
+            print(json.dumps(_summary(found, (), time.perf_counter() - began)))
+        raise _nothing_found(found, station.source if picks is None else picks_file, auto=picks is None)
     result = Result(found.pipeline, (station,))
     for path in options.out:
         write(result, path)
@@ -149,18 +156,38 @@ def _reconstruct(options: argparse.Namespace) -> int:
     return DONE
 
 
+def _check_together(options: argparse.Namespace) -> None:
+    """Refuse options that do not go with each other."""
+    if options.auto and options.picks is not None:
+        raise InputError(COMMAND_LINE, "--auto", "finds the pipes without picks, and --picks names some", "give one of the two")
+    if options.flanges and not options.auto:
+        raise InputError(COMMAND_LINE, "--flanges", "goes with --auto: flanges of picked pipes are picked, too", "leave it out, or give --auto")
+    if not 1 <= options.alternatives <= MOST_LISTED:
+        raise InputError(COMMAND_LINE, "--alternatives", f"is {options.alternatives}", f"give a number from 1 to {MOST_LISTED}")
+    if options.auto and options.alternatives > 1:
+        raise InputError(COMMAND_LINE, "--alternatives", "ranks what picks can mean, and --auto has none", "leave one of the two out")
+
+
+def _nothing_found(found: Reconstruction, file: Path, *, auto: bool) -> InputError:
+    what = "the calibration belongs to the photographs and that working range and diameters hold the pipes"
+    if auto:
+        return InputError(file, "cameras", "no pipe was found in the photographs", f"check that {what}, or pick the pipes")
+    why = "; ".join(f"pick {failed.pick}: {failed.reason}" for failed in found.failed_picks[:REASONS_SHOWN])
+    return InputError(file, "picks", f"no pipe fits the images ({why})", f"check that the picks are on pipe edges, that {what}")
+
+
 def _picks_of(file: Path, station: Station) -> Picks:
     from pipeworkbench.recon.picks import read_picks
 
     picks = read_picks(file, station)
-    if not picks.pipes:
-        raise InputError(file, "picks", "there are only flange picks, and flanges are not reconstructed yet", "pick pipes too")
+    if not picks.pipes and not picks.refused:
+        raise InputError(file, "picks", "there are only flange picks, and a flange is found on its pipe", "pick pipes too")
     return picks
 
 
 def _settings_of(options: argparse.Namespace, picks: Picks | None) -> PickSettings:
     """Return the settings that the options ask for; the picks say whether standard diameters are needed."""
-    from pipeworkbench.recon.search import PickSettings, sizes_in
+    from pipeworkbench.recon.pick_settings import PickSettings, sizes_in
 
     settings = PickSettings()
     if options.working_range is not None:
@@ -169,7 +196,8 @@ def _settings_of(options: argparse.Namespace, picks: Picks | None) -> PickSettin
             raise InputError(COMMAND_LINE, "--working-range", "begins inside the rig", f"begin at {NEAREST_MM:g} mm or more")
     if options.diameters is not None:
         settings = replace(settings, diameter_range=_range(options.diameters, "--diameters"))
-        standard = picks is None or any(pick.diameter is None for pick in picks.pipes)
+        # a pick that gives its diameter, or is free, needs none: then only the others fail
+        standard = picks is None or all(pick.diameter is None for pick in picks.pipes)
         if standard and not sizes_in(settings):
             raise InputError(COMMAND_LINE, "--diameters", "holds no diameter of EN 10220", "widen it, or pick with a free diameter")
     return settings
@@ -241,15 +269,35 @@ def _range(values: Sequence[float], key: str) -> tuple[float, float]:
 
 
 def _summary(found: Reconstruction, outputs: Sequence[Path], seconds: float) -> dict[str, object]:
-    return {
+    summary: dict[str, object] = {
         "station": found.pipeline.frame,
         "pipes": len(found.pipeline.pipes),
-        "failed_picks": found.failed_picks,
-        "skipped_picks": found.skipped_picks,
+        "failed_picks": [failed._asdict() for failed in found.failed_picks],
+        "warnings": found.warnings,
         "outputs": [str(path) for path in outputs],
         "seconds": round(seconds, 2),
         "components": found.pipeline.to_dict()["components"],
     }
+    if found.alternatives:
+        summary["alternatives"] = [{"pick": index, "ranked": _ranked(found.alternatives[index])} for index in sorted(found.alternatives)]
+    return summary
+
+
+def _ranked(alternatives: Sequence[Alternative]) -> list[dict[str, object]]:
+    return [
+        {
+            "alternative": rank,
+            "dn": one.pipe.dn,
+            "outer_diameter": one.pipe.outer_diameter,
+            "start": one.pipe.start,
+            "end": one.pipe.end,
+            "quality": one.pipe.quality,
+            "score": one.score,
+            "approximate": one.pipe.approximate,
+            "chosen": one.chosen,
+        }
+        for rank, one in enumerate(alternatives, 1)
+    ]
 
 
 def _print_table(found: Reconstruction, outputs: Sequence[Path], seconds: float) -> None:
@@ -263,16 +311,36 @@ def _print_table(found: Reconstruction, outputs: Sequence[Path], seconds: float)
     table = Table(title=f"Station {found.pipeline.frame}", title_justify="left")
     for column in TERMINAL_COLUMNS:
         table.add_column(column, justify="left" if column == "remarks" else "right")
-    for pipe in found.pipeline.pipes:
-        table.add_row(*terminal_row(pipe))
-    for index in found.failed_picks:
-        table.add_row(str(index), "-", "-", "-", "-", "-", "no pipe fits the images")
+    for component in found.pipeline.components:
+        table.add_row(*terminal_row(component))
+    for index, _ in found.failed_picks:
+        table.add_row(str(index), "-", "-", "-", "-", "-", "failed, see below")
     console.print(table)
-    if found.skipped_picks:
-        console.print(f"Flanges are not reconstructed yet: {len(found.skipped_picks)} flange picks were left out.")
+    for index, reason in found.failed_picks:
+        console.print(f"Pick {index} failed: {one_line(reason)}.", soft_wrap=True, markup=False)
+    if found.alternatives:
+        _print_alternatives(found.alternatives, console)
+    for warning in found.warnings:
+        console.print(f"Note: {one_line(warning)}", soft_wrap=True, markup=False)
     for path in outputs:
         console.print(f"written: {path}", soft_wrap=True)
     console.print(f"{seconds:.1f} s")
+
+
+def _print_alternatives(alternatives: Mapping[int, Sequence[Alternative]], console: Console) -> None:
+    from rich.table import Table
+
+    table = Table(title='Alternatives: a pick gets another one with the key "alternative" in picks.json', title_justify="left")
+    for column in ("pick", "alternative", "DN", "outside diameter", "middle (x, y, z)", "quality", "score", "chosen"):
+        table.add_column(column, justify="right")
+    for index in sorted(alternatives):
+        for rank, one in enumerate(alternatives[index], 1):
+            pipe = one.pipe
+            middle = ", ".join(f"{(start + end) / 2:.0f}" for start, end in zip(pipe.start, pipe.end, strict=True))
+            quality = "-" if pipe.quality is None else f"{pipe.quality:.2f} px"
+            chosen = "yes" if one.chosen else ""
+            table.add_row(str(index), str(rank), str(pipe.dn or "-"), f"{pipe.outer_diameter:.1f} mm", middle, quality, f"{one.score:.1f}", chosen)
+    console.print(table)
 
 
 class _Progress:

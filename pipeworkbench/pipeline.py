@@ -22,6 +22,8 @@ from pipeworkbench.files import check, key_path, read_json, written_whole
 
 SCHEMA = "pipeworkbench-pipeline/1"
 BLIND_FLANGE = "05"  # of EN 1092-1
+SHORTEST_GAP = 1.0  # mm; less is no gap
+HUBBED_FLANGES = ("12", "13")  # of EN 1092-1: a short hub around the pipe instead of a cone that tapers to it
 
 Finite = Annotated[float, Predicate(math.isfinite)]
 Positive = Annotated[float, Gt(0), Predicate(math.isfinite)]
@@ -82,7 +84,11 @@ class Component:
 
 @dataclass(frozen=True, kw_only=True)
 class Pipe(Component):
-    """A straight pipe from ``start`` to ``end`` (mm)."""
+    """A straight pipe from ``start`` to ``end`` (mm).
+
+    ``gaps`` are the parts, in mm from ``start``, where no image shows both edges and the pipe was bridged;
+    ``nearest_standard`` names the standard size within three ``sigma_outer_diameter`` of a free diameter.
+    """
 
     kind: ClassVar[str] = "pipe"
 
@@ -90,11 +96,23 @@ class Pipe(Component):
     end: Vector
     sigma_outer_diameter: NotNegative | None = None
     approximate: bool = False
+    gaps: tuple[tuple[NotNegative, NotNegative], ...] | None = None
+    nearest_standard: str | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if math.dist(self.start, self.end) == 0:
             raise ValueError("start and end are the same point")
+        if any(start >= end for start, end in self.gaps or ()):
+            raise ValueError("a gap ends before it starts")
+
+    def with_ends(self, start: Vector, end: Vector) -> Pipe:
+        """Return the pipe between other ends (mm) near its axis; of its gaps what lies between them stays."""
+        length = math.dist(start, end)
+        shift = sum((a - b) * (c - b) for a, b, c in zip(start, self.start, self.end, strict=True)) / self.length
+        moved = ((max(first - shift, 0.0), min(last - shift, length)) for first, last in self.gaps or ())
+        gaps = tuple((round(first, 1), round(last, 1)) for first, last in moved if last - first >= SHORTEST_GAP)
+        return dataclasses.replace(self, start=start, end=end, gaps=gaps or None)
 
     @property
     def length(self) -> float:

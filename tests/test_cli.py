@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 from conftest import ROOT, altered_station
 
-from pipeworkbench.cli import main
+from pipeworkbench.cli import MOST_LISTED, main
 from pipeworkbench.pipeline import Pipeline
-from pipeworkbench.recon.picks import read_picks
+from pipeworkbench.recon.picks import MOST_ALTERNATIVES, read_picks
 from pipeworkbench.recon.station import read_station
 
-PIPE_PICKS = 9  # of the sample
+PIPE_PICKS, FLANGE_PICKS = 9, 4  # of the sample
 
 
 def rename(mapping, old, new):
@@ -238,35 +238,33 @@ def test_pick_that_is_not_finite_is_refused_with_its_key(altered, refusal, numbe
 # ---------------------------------------------------------------- the picks
 
 
-def test_pick_outside_the_image_is_refused(altered, refusal):
-    line = refusal(altered(picks=lambda p: p["picks"][3]["edges"][1][0].__setitem__(0, 2600.0)))
-    assert "picks.json: picks[3]" in line
-    assert "outside the image of 2592 x 1944 pixels" in line
+def only(number, change):
+    """Return a change of a picks file: one pick alone, altered."""
+
+    def alter(picks):
+        picks["picks"] = [picks["picks"][number]]
+        change(picks["picks"][0])
+
+    return alter
 
 
-def test_both_edges_the_same_edge_are_refused(altered, refusal):
-    def repeat(picks):
-        (u1, v1), (u2, v2) = picks["picks"][1]["edges"][0]
-        picks["picks"][1]["edges"][1] = [[u1 + 20, v1], [u2 - 15, v2 + 1]]
-
-    line = refusal(altered(picks=repeat))
-    assert "picks.json: picks[1].edges:" in line
-    assert "same edge" in line
+def test_pick_outside_the_image_alone_is_refused(altered, refusal):
+    line = refusal(altered(picks=only(3, lambda pick: pick["edges"][1][0].__setitem__(0, 2600.0))))
+    assert "picks.json: picks: no pipe fits the images (pick 0: the point (2600, " in line
+    assert "outside the image of 2592 x 1944 pixels; click inside the image" in line
 
 
-def test_pipe_that_is_picked_twice_is_refused(altered, refusal):
-    def again(picks):
-        one, other = picks["picks"][5]["edges"]
-        picks["picks"].append({"kind": "pipe", "camera": "left", "edges": [other[::-1], one]})
+def test_both_edges_the_same_edge_alone_are_refused(altered, refusal):
+    def repeat(pick):
+        (u1, v1), (u2, v2) = pick["edges"][0]
+        pick["edges"][1] = [[u1 + 20, v1], [u2 - 15, v2 + 1]]
 
-    line = refusal(altered(picks=again))
-    assert "picks.json: picks[13].edges:" in line
-    assert "picks[5]" in line
+    assert "pick 0: both edges are the same edge" in refusal(altered(picks=only(1, repeat)))
 
 
-def test_points_too_near_together_are_refused(altered, refusal):
-    line = refusal(altered(picks=lambda p: p["picks"][0]["edges"].__setitem__(1, [[487.4, 1201.7], [487.4, 1196.7]])))
-    assert "picks.json: picks[0].edges[1]:" in line
+def test_points_too_near_together_alone_are_refused(altered, refusal):
+    line = refusal(altered(picks=only(0, lambda pick: pick["edges"].__setitem__(1, [[487.4, 1201.7], [487.4, 1196.7]]))))
+    assert "pick 0: the points of edges[1] are only 5.0 px apart" in line
 
 
 @pytest.mark.parametrize("shorten", [lambda pick: pick["edges"].pop(), lambda pick: pick["edges"][0].pop(), lambda pick: pick["edges"][0][0].pop()])
@@ -274,10 +272,46 @@ def test_pick_with_too_few_points_is_refused(altered, refusal, shorten):
     assert "picks.json: picks[0].edges" in refusal(altered(picks=lambda p: shorten(p["picks"][0])))
 
 
-def test_crossing_edges_are_refused(altered, refusal):
-    line = refusal(altered(picks=lambda p: p["picks"][0]["edges"].__setitem__(1, [[300.0, 1000.0], [700.0, 1000.0]])))
-    assert "picks.json: picks[0].edges:" in line
-    assert "45 deg" in line
+def test_edges_across_each_other_alone_are_refused(altered, refusal):
+    line = refusal(altered(picks=only(0, lambda pick: pick["edges"].__setitem__(1, [[300.0, 1000.0], [700.0, 1000.0]]))))
+    assert "pick 0: the edges are not the two sides of one pipe (more than 45 deg apart)" in line
+
+
+@pytest.mark.slow
+def test_bad_picks_are_told_and_the_others_still_processed(altered, out, capsys):
+    def spoil(picks):
+        good = picks["picks"][0]
+        outside = {**good, "edges": [good["edges"][0], [[2600.0, 10.0], [2600.0, 100.0]]]}
+        (a, b), (c, d) = good["edges"]
+        crossing = {**good, "edges": [[a, d], [c, b]]}
+        wall = {**good, "camera": "left", "edges": [[[100.0, 1800.0], [100.0, 1700.0]], [[160.0, 1800.0], [160.0, 1700.0]]], "diameter": 1.0}
+        picks["picks"] = [outside, good, crossing, {**good, "edges": [e[::-1] for e in good["edges"]]}, wall]
+
+    assert main(["reconstruct", str(altered(picks=spoil)), "--out", str(out / "result.json"), "--json", "--alternatives", "2"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert [pipe["pick"] for pipe in summary["components"]] == [1]
+    reasons = {one["pick"]: one["reason"] for one in summary["failed_picks"]}
+    assert list(reasons) == [0, 2, 3, 4]
+    for pick, words in ((0, "outside the image"), (2, "cross"), (3, "same as those of picks[1]"), (4, "diameter of 1 mm is outside")):
+        assert words in reasons[pick]
+        assert "; " in reasons[pick]
+    ranked = next(entry["ranked"] for entry in summary["alternatives"] if entry["pick"] == 1)
+    assert [one["alternative"] for one in ranked] == list(range(1, len(ranked) + 1))
+    assert ranked[0]["chosen"]
+    assert ranked[0]["outer_diameter"] == summary["components"][0]["outer_diameter"]
+
+
+@pytest.mark.parametrize("number", ["0", "7"])
+def test_number_of_alternatives_that_is_none_is_refused(sample, refusal, number):
+    assert "--alternatives" in refusal(sample, "--alternatives", number)
+
+
+def test_as_many_alternatives_are_listed_as_a_pick_may_name():
+    assert MOST_LISTED == MOST_ALTERNATIVES
+
+
+def test_alternatives_without_picks_are_refused(sample, refusal):
+    assert "--alternatives" in refusal(sample, "--auto", "--alternatives", "3")
 
 
 def test_empty_list_of_picks_is_refused(altered, refusal):
@@ -564,7 +598,6 @@ def test_json_summary_parses_and_agrees_with_the_pipeline(sample_run):
     assert summary["station"] == "A"
     assert summary["pipes"] == PIPE_PICKS
     assert summary["failed_picks"] == []
-    assert summary["skipped_picks"] == [9, 10, 11, 12]
     assert summary["components"] == json.loads((folder / "dummy.json").read_text(encoding="utf-8"))["components"]
     assert sorted(Path(name).suffix for name in summary["outputs"]) == sorted(ENDINGS)
 
@@ -577,7 +610,10 @@ def test_every_output_is_written_and_nothing_else_is_left(sample_run):
 
     assert len(ifcopenshell.open(str(folder / "dummy.ifc")).by_type("IfcPipeSegment")) == PIPE_PICKS
     with (folder / "dummy.csv").open(encoding="utf-8", newline="") as file:
-        assert len(list(csv.DictReader(file))) == PIPE_PICKS
+        kinds = [row["kind"] for row in csv.DictReader(file)]
+    assert kinds.count("pipe") == PIPE_PICKS
+    assert kinds.count("flange") == FLANGE_PICKS
+    assert kinds.count("elbow") >= 5
     assert (folder / "dummy.step").read_text(encoding="ascii").startswith("ISO-10303-21")
     picture = cv2.imread(str(folder / "dummy.png"))
     assert picture.shape[1] > 2 * picture.shape[0]

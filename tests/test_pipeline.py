@@ -157,6 +157,14 @@ def test_moved_components_keep_their_shape_and_their_ports_move_along():
             assert found.direction == pytest.approx((-b, a, c))
 
 
+def test_gaps_stay_where_they_are_when_ends_move():
+    pipe = Pipe(id="P", outer_diameter=48.3, start=(0.0, 0.0, 0.0), end=(1000.0, 0.0, 0.0), gaps=((50.0, 90.0), (400.0, 450.0), (900.0, 980.0)))
+    moved = pipe.with_ends((80.0, 1.0, 0.0), (940.0, 0.0, 0.0))
+    assert moved.gaps == ((0.0, 10.0), (320.0, 370.0), (820.0, 860.0))
+    assert pipe.with_ends((100.0, 0.0, 0.0), (300.0, 0.0, 0.0)).gaps is None
+    assert pipe.with_ends((-20.0, 0.0, 0.0), (1000.0, 0.0, 0.0)).gaps[0] == (70.0, 110.0)
+
+
 def test_a_branch_is_a_tees_third_port():
     data = complete()
     data["joints"] = [{"a": "P1", "a_port": 0, "b": "T1", "b_port": 2}]
@@ -368,6 +376,23 @@ def test_pipe_without_length_is_refused():
     error = refused(data)
     assert error.key.startswith("components[0]")
     assert "same point" in error.problem
+
+
+def test_gaps_and_the_nearest_standard_survive_a_round_trip():
+    data = complete()
+    data["components"][0] |= {"gaps": [[54.2, 132.0], [200.0, 210.5]], "nearest_standard": "DN 50"}
+    pipeline = Pipeline.from_dict(data)
+    assert pipeline.pipes[0].gaps == ((54.2, 132.0), (200.0, 210.5))
+    again = through_json(pipeline)
+    assert again.pipes[0] == pipeline.pipes[0]
+    assert json.loads(json.dumps(again.to_dict()))["components"][0]["gaps"] == [[54.2, 132.0], [200.0, 210.5]]
+
+
+@pytest.mark.parametrize("gaps", [[[20.0, 10.0]], [[-1.0, 10.0]], [[1.0]], 5, [["a", "b"]]])
+def test_gaps_that_are_none_are_refused(gaps):
+    data = complete()
+    data["components"][0]["gaps"] = gaps
+    assert refused(data).key.startswith("components[0]")
 
 
 @pytest.mark.parametrize("key", ["components", "joints"])

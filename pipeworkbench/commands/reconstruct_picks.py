@@ -11,7 +11,7 @@ import FreeCAD
 import FreeCADGui
 
 from pipeworkbench.commands.base import Command, transaction
-from pipeworkbench.errors import InputError
+from pipeworkbench.errors import InputError, one_line
 
 
 class ReconstructPicks(Command):
@@ -53,10 +53,10 @@ def reconstruct_picks(obj: Any, path: Path, progress: Callable[[str, int, int], 
         for made in (*components, *connections_in(obj.Document).values()):
             show(made)
     FreeCAD.Console.PrintMessage(f"Station {station.name}: {len(components)} components reconstructed\n")
-    if found.failed_picks:
-        FreeCAD.Console.PrintWarning(f"No pipe fits the images at the picks {', '.join(map(str, found.failed_picks))}\n")
-    if found.skipped_picks:
-        FreeCAD.Console.PrintWarning(f"{len(found.skipped_picks)} flange picks were left out: flanges are not reconstructed yet\n")
+    for index, reason in found.failed_picks:
+        FreeCAD.Console.PrintWarning(f"Pick {index} failed: {one_line(reason)}.\n")
+    for warning in found.warnings:
+        FreeCAD.Console.PrintMessage(f"{one_line(warning)}\n")
     return components
 
 

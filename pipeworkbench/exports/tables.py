@@ -14,7 +14,8 @@ CSV_COLUMNS = (
     "id", "kind", "pick", "station", "standard", "dn", "outer_diameter_mm", "wall_thickness_mm", "verified_sources",
     "length_mm", "start_x_mm", "start_y_mm", "start_z_mm", "end_x_mm", "end_y_mm", "end_z_mm",
     "quality_px", "sigma_x_mm", "sigma_y_mm", "sigma_z_mm", "sigma_direction_deg", "sigma_outer_diameter_mm", "loa", "approximate",
-    "type", "pn", "bend_angle_deg", "bend_radius_mm", "second_diameter_mm", "D_mm", "C_mm", "K_mm", "L_mm", "bolts", "remarks",
+    "type", "pn", "bend_angle_deg", "bend_radius_mm", "second_diameter_mm", "D_mm", "C_mm", "K_mm", "L_mm", "bolts",
+    "nearest_standard", "gaps_mm", "remarks",
 )  # fmt: skip
 TERMINAL_COLUMNS = ("pick", "DN", "outside diameter", "length", "quality", "sigma", "remarks")
 UNVERIFIED = "dimensions of the standard not verified"
@@ -56,6 +57,10 @@ def remarks(component: AnyComponent) -> list[str]:
         said.append("approximate")
     if component.verified == 0:
         said.append(UNVERIFIED)
+    if isinstance(component, Pipe) and component.nearest_standard:
+        said.append(f"within 3 sigma of {component.nearest_standard}")
+    if isinstance(component, Pipe) and component.gaps:
+        said.append(f"bridged at {', '.join(f'{start:.0f}-{end:.0f}' for start, end in component.gaps)} mm")
     if isinstance(component, Flange) and component.equivalents:
         said.append(f"same dimensions as {equivalents_text(component)}")
     return said
@@ -91,7 +96,12 @@ def _dimensions(component: AnyComponent) -> dict[str, object]:
     """Return the cells that only some kinds have."""
     match component:
         case Pipe():
-            return {"sigma_outer_diameter_mm": component.sigma_outer_diameter, "approximate": "yes" if component.approximate else "no"}
+            return {
+                "sigma_outer_diameter_mm": component.sigma_outer_diameter,
+                "approximate": "yes" if component.approximate else "no",
+                "nearest_standard": component.nearest_standard,
+                "gaps_mm": " ".join(f"{start:g}-{end:g}" for start, end in component.gaps or ()),
+            }
         case Elbow():
             return {"type": component.bend_type, "bend_angle_deg": round(component.angle_deg, 4), "bend_radius_mm": component.bend_radius}
         case Flange():

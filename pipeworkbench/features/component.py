@@ -24,7 +24,7 @@ SAME = 1e-3  # what a coordinate (mm) or angle (deg) may differ from the measure
 SAME_DIRECTION = 1e-7
 DIRECTIONS = ("axis",)
 GRADES = {None: "", 0: "not verified", 1: "one source", 2: "two sources or more"}
-ACCURACY = ("quality", "sigma_position", "sigma_direction_deg", "sigma_outer_diameter", "loa")
+ACCURACY = ("quality", "sigma_position", "sigma_direction_deg", "sigma_outer_diameter", "loa", "gaps", "nearest_standard")
 
 Fields = dict[str, Any]
 

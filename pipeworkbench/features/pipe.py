@@ -21,6 +21,8 @@ class PipeFeature(ComponentFeature):
         *component_properties("Pipe", Property("Length", "App::PropertyLength", "Pipe", "Length along the axis")),
         Property("SigmaOutsideDiameter", "App::PropertyLength", "Measurement", "Standard deviation of the measured diameter", READ_ONLY),
         Property("Approximate", "App::PropertyBool", "Measurement", "The images do not support the pipe well", READ_ONLY),
+        Property("Gaps", "App::PropertyFloatList", "Measurement", "Starts and ends, in mm from the pipe's start, of what was bridged", READ_ONLY),
+        Property("NearestStandard", "App::PropertyString", "Measurement", "Standard size within 3 sigma of a free diameter", READ_ONLY),
     )
 
     def geometry(self, obj: Any) -> Fields:
@@ -36,6 +38,8 @@ class PipeFeature(ComponentFeature):
         obj.Length = component.length
         obj.SigmaOutsideDiameter = component.sigma_outer_diameter or 0
         obj.Approximate = component.approximate
+        obj.Gaps = [end for gap in component.gaps or () for end in gap]
+        obj.NearestStandard = component.nearest_standard or ""
 
     def set_standard(self, obj: Any, size: PipeSize | None) -> None:
         """Every size of the catalogue is a pipe of the standard."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.edges import EdgeMap
+from pipeworkbench.recon.inside import edges_around
 from pipeworkbench.recon.lines import INTERRUPTED, LineSegments, hough_segments
 from pipeworkbench.recon.picks import PipePick
 from pipeworkbench.recon.views import View
@@ -37,7 +38,7 @@ def complete_picks(view: View, pick: PipePick) -> tuple[PipePick, ...]:
     view : View
         The image that was clicked in.
     pick : PipePick
-        With both edges (returned as it is) or one point near each edge.
+        With both edges (returned as it is), one point near each edge or one between them.
 
     Returns
     -------
@@ -47,6 +48,8 @@ def complete_picks(view: View, pick: PipePick) -> tuple[PipePick, ...]:
     if pick.edges.shape[1] == 2:
         return (pick,)
     clicks = pick.edges[:, 0]
+    if len(clicks) == 1:
+        return tuple(replace(pick, edges=edges) for edges in edges_around(view.edges, clicks[0]))
     segments = _segments_around(view.edges, clicks)
     if not len(segments):
         return ()

@@ -27,7 +27,7 @@ from pipeworkbench.pipeline import AnyComponent
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.cylinder import perpendicular_axes
 from pipeworkbench.recon.shapes import Shapes, shapes_of
-from pipeworkbench.recon.visibility import hidden
+from pipeworkbench.recon.visibility import hidden, hidden_in_alternatives
 
 INTERVAL_PX = 3.0  # the paper's s
 TOUCHING_MM = 10.0  # another component hides a sample only where it is nearer by more than this
@@ -45,7 +45,7 @@ class Contour:
         Row of the component that a sample belongs to.
     curve : (n,) array
         Number of the curve; a curve's samples follow each other. ``names[curve]`` says what it is: "pipe",
-        "elbow", "rim", "neck" (outlines), "face", "back" (circles).
+        "elbow", "rim", "neck" (outlines), "face", "back", "hub end" (circles), "raised face" (both).
     parameter : (n,) array
         0 to 1 along the curve: from a component's start to its end, from a flange's face to its back, or around.
     position, tangent, normal : (n, 2) arrays
@@ -88,7 +88,14 @@ class Contour:
         return ~(self.hidden | self.occluded)
 
 
-def contour_of(camera: Camera, components: Sequence[AnyComponent], interval: float = INTERVAL_PX, touching: float = TOUCHING_MM) -> Contour:
+def contour_of(
+    camera: Camera,
+    components: Sequence[AnyComponent],
+    interval: float = INTERVAL_PX,
+    touching: float = TOUCHING_MM,
+    alternatives: Sequence[int] | None = None,
+    coarse: int = COARSE,
+) -> Contour:
     """Return what a camera sees of components, sampled every ``interval`` pixels inside the image.
 
     Parameters
@@ -100,6 +107,10 @@ def contour_of(camera: Camera, components: Sequence[AnyComponent], interval: flo
         The paper's s (Sect. 4.1), px.
     touching : float
         Another component hides a sample only where it is nearer by more than this (mm).
+    alternatives : sequence of int, optional
+        Number of the alternative that each component belongs to: those of different ones do not hide each other.
+    coarse : int
+        Points per curve with which its length in the image is measured; few do for small components that are wholly in it.
 
     Raises
     ------
@@ -108,16 +119,19 @@ def contour_of(camera: Camera, components: Sequence[AnyComponent], interval: flo
     """
     shapes = shapes_of(components)
     curves = _curves_of(shapes, camera.projection_centre)
-    curve, parameter = _spaced(camera, curves, interval)
+    curve, parameter = _spaced(camera, curves, interval, coarse)
     point, outward = curves.at(curve, parameter)
     position, derivative = camera.project_with_derivative(point)
     # a curve's first and last sample may lie a little outside
     inside = camera.sees(position)
     curve, parameter = curve[inside], parameter[inside]
     point, outward, position, derivative = (x[inside] for x in (point, outward, position, derivative))
-    normal, gain = _image_normal(derivative, outward)
+    normal, gain = image_normal(derivative, outward)
     owner = curves.owner[curve]
-    by_itself, by_others = hidden(camera.projection_centre, point, shapes, owner, touching)
+    if alternatives is None:
+        by_itself, by_others = hidden(camera.projection_centre, point, shapes, owner, touching)
+    else:
+        by_itself, by_others = hidden_in_alternatives(camera.projection_centre, point, shapes, owner, touching, np.asarray(alternatives, np.intp))
     return Contour(
         owner,
         curve,
@@ -238,24 +252,24 @@ def _curves_of(shapes: Shapes, centre: Array) -> _Curves:
     return _Curves(**sorted_fields, centre=centre, names=tuple(curves.names[i] for i in order))
 
 
-def _spaced(camera: Camera, curves: _Curves, interval: float) -> tuple[NDArray[np.intp], Array]:
+def _spaced(camera: Camera, curves: _Curves, interval: float, coarse: int) -> tuple[NDArray[np.intp], Array]:
     """Return curve numbers and parameters (n,) of samples that lie ``interval`` pixels apart in the image."""
     count = len(curves.owner)
     if not count:
         return np.zeros(0, np.intp), np.zeros(0)
-    number, grid = np.arange(count), np.linspace(0, 1, COARSE)
+    number, grid = np.arange(count), np.linspace(0, 1, coarse)
     parameter = np.tile(grid, (count, 1))
     for narrowing in (True, False):
-        points, _ = curves.at(np.repeat(number, COARSE), parameter.ravel())
+        points, _ = curves.at(np.repeat(number, coarse), parameter.ravel())
         position = camera.project(points)
-        inside = camera.sees(position).reshape(count, COARSE)
+        inside = camera.sees(position).reshape(count, coarse)
         if narrowing:
             # the same number of points where the curve is in the image: it may leave it soon
             first = np.maximum(inside.argmax(axis=1) - 1, 0)
-            last = np.minimum(COARSE - inside[:, ::-1].argmax(axis=1), COARSE - 1)
+            last = np.minimum(coarse - inside[:, ::-1].argmax(axis=1), coarse - 1)
             low, high = parameter[number, first], parameter[number, last]
             parameter = low[:, None] + (high - low)[:, None] * grid
-    position = np.where(inside[:, :, None], position.reshape(count, COARSE, 2), np.nan)
+    position = np.where(inside[:, :, None], position.reshape(count, coarse, 2), np.nan)
     # what is not in the image has no length, so that no samples fall there
     steps = np.nan_to_num(np.linalg.norm(np.diff(position, axis=1), axis=2))
     length = np.concatenate([np.zeros((count, 1)), np.cumsum(steps, axis=1)], axis=1)
@@ -266,12 +280,12 @@ def _spaced(camera: Camera, curves: _Curves, interval: float) -> tuple[NDArray[n
     start = np.concatenate([[0.0], np.cumsum(total + 1.0)[:-1]])
     rank = np.arange(len(curve)) - np.repeat(np.cumsum(samples) - samples, samples)
     wanted = start[curve] + total[curve] * rank / np.maximum(samples[curve] - 1, 1)
-    rising = (length + start[:, None]).ravel() + np.arange(count * COARSE) * 1e-12
+    rising = (length + start[:, None]).ravel() + np.arange(count * coarse) * 1e-12
     found = np.interp(wanted, rising, parameter.ravel())
     return curve, np.clip(found, 0.0, 1.0)
 
 
-def _image_normal(derivative: Array, outward: Array) -> tuple[Array, Array]:
+def image_normal(derivative: Array, outward: Array) -> tuple[Array, Array]:
     """Return unit normals (n, 2) and gains (n,) with normal J = gain outward, for derivatives J (n, 2, 3)."""
     with np.errstate(invalid="ignore", divide="ignore"):
         seen = np.einsum("nij,nj->ni", derivative, outward)

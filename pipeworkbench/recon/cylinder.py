@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,6 +49,10 @@ class Cylinders:
         """Return one of them."""
         return Cylinder(self.points[row], self.directions[row], float(self.radii[row]))
 
+    def at(self, along: Array) -> Array:
+        """Return an axis point of each (k, 3) at signed distances (k,) from their points, mm."""
+        return np.asarray(self.points + along[:, None] * self.directions)
+
     def nearest_to_ray(self, origin: Array, ray: Array) -> Array:
         """Return where a ray (3,) from ``origin`` (3,) passes nearest to each axis: distances (k,) along it."""
         w = self.points - origin
@@ -68,6 +73,12 @@ class Contours:
     normal: Array
     gain: Array
     outward: Array
+
+
+def joined(parts: Sequence[Cylinders]) -> Cylinders:
+    """Return all cylinders of several parts."""
+    points, directions, radii = zip(*((part.points, part.directions, part.radii) for part in parts), strict=True)
+    return Cylinders(np.concatenate(points), np.concatenate(directions), np.concatenate(radii))
 
 
 def perpendicular_axes(directions: Array) -> tuple[Array, Array]:

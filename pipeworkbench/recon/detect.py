@@ -19,27 +19,34 @@ from numpy.typing import NDArray
 
 from pipeworkbench.catalogue import PipeSize, pipe_sizes
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinders, outlines, spread
+from pipeworkbench.recon.candidates import PipeCandidate
+from pipeworkbench.recon.cylinder import Cylinders, joined, outlines, spread
 from pipeworkbench.recon.edge_lines import EdgeLineSettings, match_lines
+from pipeworkbench.recon.edge_raster import raster_of
 from pipeworkbench.recon.evidence import EvidenceSettings, evidence
-from pipeworkbench.recon.lines import INTERRUPTED, LineSettings, hough_segments
+from pipeworkbench.recon.long_lines import LongLineSettings, long_lines
+from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.picks import PipePick
-from pipeworkbench.recon.pipes import PipeCandidate, from_pick
-from pipeworkbench.recon.search import PickSettings, joined
+from pipeworkbench.recon.pipes import from_pick
+from pipeworkbench.recon.prolong import prolonged
 from pipeworkbench.recon.second_edges import SecondEdgeSettings, cylinders_from_edges
 from pipeworkbench.recon.settle import drawn_onto_edges
 from pipeworkbench.recon.surface import Agreement, agreement, surface_agreement
+from pipeworkbench.recon.vectors import across
 from pipeworkbench.recon.views import View
 
 TRUE_SHARE, TRUE_DECLINE = 0.95, 0.06  # correlations of right cylinders pile up below 1 like this
 FALSE_RANGE = 1.2  # those of wrong ones spread evenly over about so much
+NEAR_PX = 2  # what counts as an edge at first glance
 SETTLING_PX = (3.0, 3.0, 2.0)  # search ranges of the steps onto the edges
+PROLONGED_PX = (2.0, 1.5)  # the same once they are longer
 CELL_PX, CELL_MM, CELL_RADIUS = 6.0, 100.0, 0.04  # cylinders in one cell of direction, place and relative radius are alike
 NESTED = 0.8  # radii; of what lies further beside an accepted pipe, most is outside it
 PARALLEL = 0.97  # cosine
 PICK_SAMPLES = 25  # along a detected cylinder, to find what of it an image shows
 WORKERS = 2  # more wait for each other's interpreter lock
 STEPS = 7  # that are reported
+RIVALS = 1.4  # of the distance; the next sizes with the same edges are nearer than this
 SAME_PLACE = 0.5  # radii; a measured pipe further from what was detected is another one
 FURTHEST_SETTLED = 200.0  # mm; what is drawn further off was something else
 SCREENING = EvidenceSettings(samples=16, background=((-14.0, -6.0), (6.0, 14.0)))  # for many hypotheses at a time
@@ -50,22 +57,24 @@ class DetectSettings:
     """Tunables; lengths in mm.
 
     ``working_range`` and ``diameter_range`` limit the pipes (below 15 mm mouldings and rails look like pipes).
-    ``screened``, ``weighed`` and ``settled`` are how many hypotheses go on to the next step at most;
+    ``screened``, ``weighed``, ``settled`` and ``prolonged`` are how many hypotheses go on to the next step at most;
     ``surface_weight`` is what the images' agreement about the surface counts against the evidence of
     the edges. A pipe is accepted with at least ``least_evidence``, ``least_agreement`` of its surface in
     every pair of images, at most ``most_beside`` of what is beside it, ``least_constancy`` along the
-    axis, ``slenderness`` and a diameter within ``tolerance`` of one of series 1 or ``rare_tolerance`` of
-    another (parts of the diameter).
+    axis, ``slenderness`` and a diameter within ``tolerance`` (and ``tolerance_px`` in the images) of one of series 1 or ``rare_tolerance`` of
+    another (parts of the diameter). When it is measured it must lead other places by ``least_lead`` and itself moved by
+    ``least_nearby_lead``, more than a pick: nobody said that there is a pipe.
     """
 
     working_range: tuple[float, float] = (2000.0, 12000.0)
     diameter_range: tuple[float, float] = (15.0, 700.0)
-    segments: LineSettings = INTERRUPTED
+    segments: LongLineSettings = field(default_factory=LongLineSettings)
     lines: EdgeLineSettings = field(default_factory=lambda: EdgeLineSettings(least_length=25.0, least_witnesses=0.45, steepest_deg=85.0))
     second_edges: SecondEdgeSettings = field(default_factory=SecondEdgeSettings)
     screened: int = 6000
     weighed: int = 2500
     settled: int = 1000
+    prolonged: int = 400
     surface_weight: float = 0.6
     least_evidence: float = 0.9
     least_agreement: float = 0.955
@@ -73,7 +82,10 @@ class DetectSettings:
     least_constancy: float = 0.15
     slenderness: float = 1.3
     tolerance: float = 0.012
+    tolerance_px: float = 0.3
     rare_tolerance: float = 0.004
+    least_lead: float = 30.0
+    least_nearby_lead: float = 16.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,13 +115,14 @@ def detect_cylinders(
     settings = settings or DetectSettings()
     progress("finding lines")
     with ThreadPoolExecutor(WORKERS) as threads:
-        segments = list(threads.map(lambda view: hough_segments(view.edges, view.camera.interior, settings.segments), views))
+        segments = list(threads.map(lambda view: long_lines(view.edges, view.camera.interior, settings.segments), views))
+        rasters = list(threads.map(lambda view: raster_of(view.edges, NEAR_PX), views))
     progress("matching lines")
     lines = match_lines(views, segments, settings.lines)
     common = [size for size in pipe_sizes() if size.series == 1 and settings.diameter_range[0] <= size.outer_diameter <= settings.diameter_range[1]]
     diameters = np.array([size.outer_diameter for size in common])
     progress("finding second edges")
-    cylinders, extents, second = cylinders_from_edges(views, lines, diameters, settings.second_edges)
+    cylinders, extents, second = cylinders_from_edges(views, rasters, lines, diameters, settings.second_edges)
     if not len(cylinders):
         return Detected(cylinders, extents, (), np.zeros(0))
     progress("comparing surfaces")
@@ -122,7 +135,11 @@ def detect_cylinders(
     score = _edge_evidence(views, cylinders, extents, SCREENING) + settings.surface_weight * surface
     best = np.argsort(-score, kind="stable")[: settings.settled]
     progress("drawing onto edges")
-    cylinders, extents = _settled(views, cylinders[best], extents[best])
+    cylinders, extents, _ = _settled(views, cylinders[best], extents[best], SETTLING_PX)
+    score = _edge_evidence(views, cylinders, extents, SCREENING)
+    score += settings.surface_weight * _log_ratio(surface_agreement(views, cylinders, extents, 10, 7))
+    best = _distinct(views, cylinders, extents, score, settings.prolonged)
+    cylinders, extents = _prolonged(views, cylinders[best], extents[best])
     return _accepted(views, cylinders, extents, settings)
 
 
@@ -149,12 +166,18 @@ def detect(
         No two in the same place; best first.
     """
     settings = settings or DetectSettings()
-    pick_settings = replace(pick_settings or PickSettings(), working_range=settings.working_range, diameter_range=settings.diameter_range)
+    pick_settings = replace(
+        pick_settings or PickSettings(),
+        working_range=settings.working_range,
+        diameter_range=settings.diameter_range,
+        least_lead=settings.least_lead,
+        least_nearby_lead=settings.least_nearby_lead,
+    )
     found = detect_cylinders(views, settings, progress)
     progress("measuring pipes")
     picks = [pick for row in range(len(found.sizes)) if (pick := _as_pick(views, found, row)) is not None]
     with ThreadPoolExecutor(WORKERS) as threads:
-        answers = list(threads.map(lambda pick: from_pick(views, pick, pick_settings), picks))
+        answers = list(threads.map(lambda pick: from_pick(views, pick, _nearby(views, found, pick, pick_settings)), picks))
     # a pipe that the measurement takes for another than the detection is not sure enough
     candidates = [
         answer[0]
@@ -168,11 +191,19 @@ def detect(
     return tuple(candidates[row] for row in _beside_each_other(cylinders, extents, range(len(candidates))))
 
 
+def _nearby(views: Sequence[View], found: Detected, pick: PipePick, settings: PickSettings) -> PickSettings:
+    """Return settings that search where pipes of the detected size and its neighbours would have the same edges."""
+    middle = found.cylinders.points[pick.index] + found.extents[pick.index].mean() * found.cylinders.directions[pick.index]
+    distance = float(np.linalg.norm(middle - views[pick.camera].camera.projection_centre))
+    near, far = settings.working_range
+    return replace(settings, working_range=(max(near, distance / RIVALS), min(far, distance * RIVALS)))
+
+
 def _confirms(candidate: PipeCandidate, found: Detected, row: int) -> bool:
     """Tell whether a measured pipe has the size and, over the detected extent, the place of a detected one."""
     cylinder, size = candidate.solution.cylinder, found.sizes[row]
-    offset = found.cylinders.points[row] + found.extents[row][:, None] * found.cylinders.directions[row] - cylinder.point
-    offset -= (offset @ cylinder.direction)[:, None] * cylinder.direction
+    ends = found.cylinders.points[row] + found.extents[row][:, None] * found.cylinders.directions[row]
+    offset = across(ends - cylinder.point, cylinder.direction)
     return candidate.size == size and bool(np.linalg.norm(offset, axis=1).max() <= SAME_PLACE * cylinder.radius)
 
 
@@ -210,7 +241,7 @@ def _mean_known(values: Array) -> Array:
 def _distinct(views: Sequence[View], cylinders: Cylinders, extents: Array, score: Array, most: int) -> NDArray[np.intp]:
     """Return the best of cylinders that are nearly the same: one per cell of a grid over how they look."""
     cells = []
-    middle = cylinders.points + extents.mean(axis=1)[:, None] * cylinders.directions
+    middle = cylinders.at(extents.mean(axis=1))
     for view in views[:2]:
         normal = np.cross(middle - view.camera.projection_centre, cylinders.directions)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
@@ -223,32 +254,51 @@ def _distinct(views: Sequence[View], cylinders: Cylinders, extents: Array, score
     return order[np.sort(first)][:most]
 
 
-def _settled(views: Sequence[View], cylinders: Cylinders, extents: Array) -> tuple[Cylinders, Array]:
+def _settled(views: Sequence[View], cylinders: Cylinders, extents: Array, ranges: Sequence[float]) -> tuple[Cylinders, Array, NDArray[np.intp]]:
+    """Return the cylinders (k) drawn onto the edges, their extents from their middles, and the rows (k,) that they were."""
     half = (extents[:, 1] - extents[:, 0]) / 2
-    middle = Cylinders(cylinders.points + extents.mean(axis=1)[:, None] * cylinders.directions, cylinders.directions, cylinders.radii)
+    middle = Cylinders(cylinders.at(extents.mean(axis=1)), cylinders.directions, cylinders.radii)
     moved = middle
-    for reach in SETTLING_PX:
+    for reach in ranges:
         moved = drawn_onto_edges(views, moved, half, reach)
     with np.errstate(invalid="ignore"):
         good = np.isfinite(moved.points).all(axis=1) & (moved.radii > 0.5 * middle.radii) & (moved.radii < 2 * middle.radii)
         good &= np.linalg.norm(moved.points - middle.points, axis=1) < FURTHEST_SETTLED
-    return moved[good], np.column_stack([-half, half])[good]
+    return moved[good], np.column_stack([-half, half])[good], np.flatnonzero(good)
+
+
+def _prolonged(views: Sequence[View], cylinders: Cylinders, extents: Array) -> tuple[Cylinders, Array]:
+    """Return the cylinders drawn onto their edges as far as these go on.
+
+    The extents remain those of the pieces: beyond a flange a pipe in line goes on as another one.
+    """
+    whole = prolonged(views, cylinders, extents)
+    moved, _, rows = _settled(views, cylinders, whole, PROLONGED_PX)
+    return moved, extents[rows] - whole[rows].mean(axis=1, keepdims=True)
 
 
 def _accepted(views: Sequence[View], cylinders: Cylinders, extents: Array, settings: DetectSettings) -> Detected:
     """Return the cylinders that are pipes, without those in the same place as a better one."""
     if not len(cylinders):
         return Detected(cylinders, extents, (), np.zeros(0))
+    length = extents[:, 1] - extents[:, 0]
+    size, fits = _sizes_of(2 * cylinders.radii, _tolerances(views, cylinders, extents, settings), settings)
+    rows = np.flatnonzero(fits & (length >= settings.slenderness * 2 * cylinders.radii))
+    cylinders, extents, size, length = cylinders[rows], extents[rows], size[rows], length[rows]
     edges = _edge_evidence(views, cylinders, extents, EvidenceSettings())
     images = agreement(views, cylinders, extents)
-    size, fits = _sizes_of(2 * cylinders.radii, settings)
-    length = extents[:, 1] - extents[:, 0]
-    good = fits & (edges >= settings.least_evidence) & (length >= settings.slenderness * 2 * cylinders.radii)
-    good &= _is_pipe(images, settings)
+    good = (edges >= settings.least_evidence) & _is_pipe(images, settings)
     confidence = edges + settings.surface_weight * _log_ratio(images.surface)
     order = np.argsort(-confidence * np.sqrt(length), kind="stable")
     rows = np.array(_beside_each_other(cylinders, extents, order[good[order]]), dtype=np.intp)
     return Detected(cylinders[rows], extents[rows], tuple(pipe_sizes()[i] for i in size[rows]), confidence[rows])
+
+
+def _tolerances(views: Sequence[View], cylinders: Cylinders, extents: Array, settings: DetectSettings) -> Array:
+    """Return by how much (k,) of themselves diameters may deviate: what the images resolve counts for thin pipes."""
+    camera = views[0].camera
+    distance = np.linalg.norm(cylinders.at(extents.mean(axis=1)) - camera.projection_centre, axis=1)
+    return np.hypot(settings.tolerance, settings.tolerance_px * distance / camera.interior.pixels_per_radian / (2 * cylinders.radii))
 
 
 def _is_pipe(images: Agreement, settings: DetectSettings) -> NDArray[np.bool_]:
@@ -259,11 +309,11 @@ def _is_pipe(images: Agreement, settings: DetectSettings) -> NDArray[np.bool_]:
     return known.any(axis=0) & alike & free & (images.constancy > settings.least_constancy)
 
 
-def _sizes_of(diameters: Array, settings: DetectSettings) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+def _sizes_of(diameters: Array, tolerances: Array, settings: DetectSettings) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
     """Return the nearest standard sizes' rows (k,) and whether the diameters fit; of those that do, a common one comes first."""
     standard = np.array([size.outer_diameter for size in pipe_sizes()])
-    tolerance = np.where([size.series == 1 for size in pipe_sizes()], settings.tolerance, settings.rare_tolerance)
-    off = np.abs(diameters[:, None] / standard - 1) / tolerance
+    common = np.array([size.series == 1 for size in pipe_sizes()])
+    off = np.abs(diameters[:, None] / standard - 1) / np.where(common, tolerances[:, None], settings.rare_tolerance)
     best = off.argmin(axis=1)
     return best, off.min(axis=1) <= 1
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.chance import densities_beside, over_rates
 from pipeworkbench.recon.cylinder import Cylinders, smooth_contours
 from pipeworkbench.recon.match import edges_along_normals, nearest_rows
 from pipeworkbench.recon.views import View
@@ -87,13 +88,7 @@ def _in_view(view: View, cylinders: Cylinders, extents: Array, polarity: Array |
     windows = np.array(settings.background)
     sample, edge, distance = edges_along_normals(view.edges, position, normal, float(np.abs(windows).max()))
 
-    # nearest-edge distances of a Poisson process: P(none within a window) = exp(-density width)
-    hit = np.zeros((len(position), len(windows)), bool)
-    for column, (low, high) in enumerate(windows):
-        hit[sample[(distance > low) & (distance < high)], column] = True
-    chance = hit.reshape(contours, -1).sum(axis=1) / (count * len(windows))
-    width = float(np.mean(windows[:, 1] - windows[:, 0]))
-    density = np.maximum(-np.log(1 - np.minimum(chance, 0.98)) / width, settings.least_density)
+    density = densities_beside(sample, distance, windows, visible, shape[2], settings.least_density)
 
     # from here on only the samples that met an edge, each its nearest
     near = np.flatnonzero(np.abs(distance) <= settings.search_range)
@@ -111,7 +106,7 @@ def _in_view(view: View, cylinders: Cylinders, extents: Array, polarity: Array |
     for rate in settings.hit_rates:
         met = np.bincount(contour, np.log1p(rate / (1 - rate) * quotient), contours)
         rates.append(settings.stretches * (met + visible * np.log(1 - rate)) / count)
-    ratio = (np.logaddexp.reduce(rates, axis=0) - np.log(len(rates))).reshape(shape[:2])
+    ratio = over_rates(rates).reshape(shape[:2])
     enough = (visible >= settings.least_visible * shape[2]).reshape(shape[:2]).all(axis=1)
     steps = np.zeros(len(position))
     steps[sample[off <= settings.near]] = step[off <= settings.near]

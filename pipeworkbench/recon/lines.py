@@ -147,22 +147,22 @@ def fit_segments(edges: EdgeMap, ends: Array, interior: Interior | None = None, 
     settings = settings or LineSettings()
     position, normal = edges.position, edges.normal
     if interior is not None:
-        position, normal = _without_distortion(position, normal, interior)
+        position, normal = without_distortion(position, normal, interior)
     for growth in range(GROWTHS):
         segment, edge = _supporting(edges, ends, settings)
-        lines = _fit(position, normal, edges, segment, edge, len(ends), settings)
+        lines = fit_points(position, normal, edges, segment, edge, len(ends), settings)
         segment, edge = _unbroken(lines, position, settings)
-        lines = _fit(position, normal, edges, segment, edge, len(ends), settings)
+        lines = fit_points(position, normal, edges, segment, edge, len(ends), settings)
         ends = _grown(lines, edges, ends, settings)
         if growth == 0:
             # detectors find most lines several times: the sooner doubles go, the less there is to fit
-            ends = ends[(_owned(lines)[1] >= MOST_SHARED * lines.support) & (lines.support > 2)]
-    keep, own = _owned(lines)
+            ends = ends[(owned(lines.segment, lines.edge, lines.length)[1] >= MOST_SHARED * lines.support) & (lines.support > 2)]
+    keep, own = owned(lines.segment, lines.edge, lines.length)
     good = (own >= settings.least_support * lines.length) & (own >= MOST_SHARED * lines.support) & (lines.length >= settings.least_length)
     segment, edge = lines.segment[keep], lines.edge[keep]
     kept = good[segment]
-    lines = _fit(position, normal, edges, segment[kept], edge[kept], len(ends), settings)
-    return _longest_first(lines, good & (lines.support > 2))
+    lines = fit_points(position, normal, edges, segment[kept], edge[kept], len(ends), settings)
+    return longest_first(lines, good & (lines.support > 2))
 
 
 def _segment_detector(grey: NDArray[np.uint8] | NDArray[np.uint16]) -> Array:
@@ -203,14 +203,29 @@ def _supporting(edges: EdgeMap, ends: Array, settings: LineSettings) -> tuple[ND
     return found[0], found[1]
 
 
-def _owned(lines: LineSegments) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the supporting pairs that count and how many (k,) each line has: a point counts for the longest line it supports."""
-    rank = np.argsort(np.argsort(-lines.length, kind="stable"))
-    order = np.lexsort((rank[lines.segment], lines.edge))
+def owned(segment: NDArray[np.intp], edge: NDArray[np.intp], weight: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Let each point count for one segment only, the one of most weight that it supports.
+
+    Parameters
+    ----------
+    segment, edge : (m,) arrays of int
+        Which points support which segment.
+    weight : (k,) array
+        Of the segments.
+
+    Returns
+    -------
+    keep : array of int
+        Rows of the pairs (segment, edge) that count.
+    count : (k,) array of int
+        How many each segment has.
+    """
+    rank = np.argsort(np.argsort(-weight, kind="stable"))
+    order = np.lexsort((rank[segment], edge))
     first = np.ones(len(order), bool)
-    first[1:] = lines.edge[order][1:] != lines.edge[order][:-1]
+    first[1:] = edge[order][1:] != edge[order][:-1]
     keep = order[first]
-    return keep, np.bincount(lines.segment[keep], minlength=len(lines))
+    return keep, np.bincount(segment[keep], minlength=len(weight))
 
 
 def _unbroken(lines: LineSegments, position: Array, settings: LineSettings) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -247,7 +262,7 @@ def _grown(lines: LineSegments, edges: EdgeMap, ends: Array, settings: LineSetti
     return grown
 
 
-def _without_distortion(position: Array, normal: Array, interior: Interior) -> tuple[Array, Array]:
+def without_distortion(position: Array, normal: Array, interior: Interior) -> tuple[Array, Array]:
     """Return points and normals (n, 2) in pixels of an image without distortion."""
     scale, origin = interior.pixels_per_radian, interior.pixels(np.zeros((1, 2)))
     tip = 0.5 * normal
@@ -256,7 +271,7 @@ def _without_distortion(position: Array, normal: Array, interior: Interior) -> t
     return interior.ideal(position) * scale + origin, turned / np.linalg.norm(turned, axis=1, keepdims=True)
 
 
-def _fit(
+def fit_points(
     position: Array, normals: Array, edges: EdgeMap, segment: NDArray[np.intp], edge: NDArray[np.intp], count: int, settings: LineSettings
 ) -> LineSegments:
     """Fit all lines at once to the points of each, with weights from their standard deviations and against outliers."""
@@ -307,7 +322,8 @@ def _fit(
     return LineSegments(ends, tangent, across, polarity, length, centre, covariance, rms, support, segment[inside], edge[inside])
 
 
-def _longest_first(lines: LineSegments, good: NDArray[np.bool_]) -> LineSegments:
+def longest_first(lines: LineSegments, good: NDArray[np.bool_]) -> LineSegments:
+    """Return those of lines (k) that are good (k,), the longest first."""
     rows = np.flatnonzero(good)
     rows = rows[np.argsort(-lines.length[rows], kind="stable")]
     new = np.full(len(lines), -1)

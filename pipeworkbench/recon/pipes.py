@@ -3,76 +3,47 @@
 
 The clicked edges are drawn onto the subpixel edges of their image, the cylinders they could be are
 searched in all images, the best are adjusted with a free diameter; then the nearest standard diameter
-is held, the pipe followed to its ends and adjusted over its whole length.
+is held, the pipe followed to its ends and adjusted over its whole length. Here the answer is chosen among what was found.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeworkbench.catalogue import PipeSize, pipe_size
-from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
-from pipeworkbench.recon.camera import Array
+from pipeworkbench.catalogue import pipe_size
+from pipeworkbench.recon.candidates import PipeCandidate, same_cylinder
 from pipeworkbench.recon.clicks import complete_picks
-from pipeworkbench.recon.cylinder import Cylinder, outlines
-from pipeworkbench.recon.extent import extent_of
-from pipeworkbench.recon.match import match, quality
-from pipeworkbench.recon.picks import PipePick
-from pipeworkbench.recon.search import (
-    LEAST_GAIN,
-    Found,
-    PickSettings,
-    best_moved,
-    clicked_extents,
-    find_cylinders,
-    joined,
-    lead_over_neighbours,
-    weights_of,
-)
+from pipeworkbench.recon.completion import adjusted_over_clicks, completed_pipe, contour_quality
+from pipeworkbench.recon.groups import distinct
+from pipeworkbench.recon.one_image import solution_of_one_image
+from pipeworkbench.recon.pick_checks import found_plane_problem, no_fit, one_sided_problem, place_problem, plane_problem, size_problem
+from pipeworkbench.recon.pick_settings import PickSettings
+from pipeworkbench.recon.picks import MOST_ALTERNATIVES, PipePick
+from pipeworkbench.recon.search import find_cylinders
 from pipeworkbench.recon.tangents import PipeTangents, all_tangents_of
 from pipeworkbench.recon.views import View
 
-COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare candidates
-UNMOVED = AdjustSettings(spacing=6.0, ranges=(1.5,), iterations=0)
-FINAL = AdjustSettings(ranges=(2.0, 1.5))  # what is settled must not wander off to a neighbour
-HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
-SURE_GAIN = 5.0  # logarithm; what a place must gain over the one that the edges of a whole pipe give
-LEAST_SEEN = 0.35  # part of all samples that must find an edge, else the pipe is approximate
-WORST_QUALITY = 0.75  # of the quality's search range; near it most edges are missing or others'
-LEAST_SUPPORT = 0.5  # of the clicked part's: a pipe whose extension finds fewer edges was followed too far
+INSIDE_SCORE, INSIDE_QUALITY = 80.0, 1.3  # logarithm, px; what a pipe must have whose edges nobody clicked: the others were wrong too often
+UNSURE = "a pipe {:g} mm nearer or further fits nearly as well; click a longer part or clearer edges, or choose one of the alternatives"
 
 
 @dataclass(frozen=True, eq=False)
-class PipeCandidate:
-    """A pipe that fits the images: geometry, standard size (None where free) and quality.
+class PickAnswer:
+    """What a pick gives: the pipe that is ``chosen``, or a ``reason`` why none is.
 
-    ``extent`` is where its edges are seen, in mm along the axis; ``quality`` Eq. 4's q in px over
-    all views; ``diameter`` in mm the adjusted one, with ``sigma_diameter``, before the standard's was held;
-    ``score`` the logarithm of how much more likely it is than clutter, ``lead`` than the best pipe elsewhere.
+    ``ranked`` are the alternatives that a person may choose from, best first, also where none is sure enough.
     """
 
-    solution: CylinderSolution
-    extent: tuple[float, float]
-    size: PipeSize | None
-    quality: float
-    diameter: float
-    sigma_diameter: float
-    score: float
-    lead: float
-    approximate: bool
-
-    @property
-    def ends(self) -> Array:
-        """End points of the axis (2, 3) in mm."""
-        return np.array([self.solution.cylinder.at(self.extent[0]), self.solution.cylinder.at(self.extent[1])])
+    chosen: PipeCandidate | None
+    ranked: tuple[PipeCandidate, ...]
+    reason: str = ""
 
 
 def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | None = None, candidates: int = 1) -> tuple[PipeCandidate, ...]:
-    """Find the pipe that was clicked in one image: by two points on each edge or one near each.
+    """Find the pipe that was clicked in one image: by two points on each edge, one near each, or one between them.
 
     Parameters
     ----------
@@ -89,126 +60,134 @@ def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | No
         Best first; empty where no cylinder fits the images, or where only one is wanted and another place
         fits nearly as well.
     """
+    answer = answer_pick(views, pick, settings, candidates)
+    if candidates > 1:
+        return answer.ranked[:candidates]
+    return () if answer.chosen is None else (answer.chosen,)
+
+
+def answer_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | None = None, candidates: int = 1) -> PickAnswer:
+    """Find the pipe that was clicked, as :func:`from_pick` does, and say why where there is none.
+
+    A pick that names one of the alternatives gets that one, however near the others come.
+    """
     settings = settings or PickSettings()
-    answers = [answer for whole in complete_picks(views[pick.camera], pick) for answer in _from_edges(views, whole, settings, candidates)]
-    answers.sort(key=lambda answer: -answer.score)
-    return tuple(answers[:candidates])
+    wholes = complete_picks(views[pick.camera], pick)
+    inside = len(pick.edges) == 1
+    if not wholes and inside:
+        return PickAnswer(None, (), "no two edges of a pipe are seen around the click; click near both edges of the pipe")
+    if not wholes:
+        return PickAnswer(None, (), "no straight edges run beside the clicks; click two points on each edge of the pipe")
+    best, reason = _surest(views, wholes, settings, inside=inside)
+    if candidates == 1 and pick.alternative is None:
+        return PickAnswer(best, () if best is None else (best,), reason)
+    # how many are compared must not depend on how many are wanted: else their numbers would change
+    wide = replace(settings, kept=MOST_ALTERNATIVES, least_lead=-np.inf, least_nearby_lead=-np.inf, least_elsewhere=-np.inf)
+    others = [other for whole in wholes for other in _from_edges(views, whole, wide, MOST_ALTERNATIVES)[0]]
+    best_first = [*([] if best is None else [best]), *sorted(others, key=lambda other: -other.score)]
+    ranked = distinct(best_first, lambda one, other: same_cylinder(other, one))[:MOST_ALTERNATIVES]
+    if pick.alternative is None:
+        return PickAnswer(best, tuple(ranked), reason)
+    if pick.alternative <= len(ranked):
+        return PickAnswer(ranked[pick.alternative - 1], tuple(ranked))
+    if ranked:
+        reason = f"there is no alternative {pick.alternative}, only {len(ranked)}; choose one of those, or leave the key out"
+    return PickAnswer(None, tuple(ranked), reason)
 
 
-def _from_edges(views: Sequence[View], pick: PipePick, settings: PickSettings, candidates: int) -> tuple[PipeCandidate, ...]:
+def _surest(views: Sequence[View], wholes: Sequence[PipePick], settings: PickSettings, *, inside: bool) -> tuple[PipeCandidate | None, str]:
+    """Return the best pipe over the pairs of edges that a pick can mean, or the reason of the likeliest pair.
+
+    Pairs around one click ``inside`` are guesses: what they give must fit better than what was clicked.
+    """
+    answers: list[PipeCandidate] = []
+    reasons = []
+    for whole in wholes:
+        found, reason = _from_edges(views, whole, settings, 1)
+        answers += found
+        reasons.append(reason)
+    if not answers:
+        # the reason of a guess says nothing to a person who did not make it
+        return None, "no pipe around the click fits the images; click near both edges of the pipe" if inside else reasons[0]
+    best = max(answers, key=lambda answer: answer.score)
+    if inside and (best.approximate or best.score < INSIDE_SCORE or best.quality > INSIDE_QUALITY):
+        return None, "which edges around the click are the pipe's is not sure; click near both edges of the pipe"
+    return best, ""
+
+
+def _from_edges(views: Sequence[View], pick: PipePick, settings: PickSettings, candidates: int) -> tuple[list[PipeCandidate], str]:
+    """Return pipes between two clicked edges, at most ``candidates``, or why there is none."""
     tangents = all_tangents_of(views[pick.camera], pick)
+    first = tangents[0]
+    pixels_per_radian = views[pick.camera].camera.interior.pixels_per_radian
+    problem = size_problem(pick, first, settings, pixels_per_radian)
+    if not problem and (alone := place_problem(views, pick, first, settings)):
+        return _from_one_image(views, pick, first, alone, settings)
+    problem = problem or plane_problem(views, pick, first, settings)
+    if problem:
+        return [], problem
+    adjusted = adjusted_over_clicks(views, pick, first, find_cylinders(views, pick, tangents, settings), settings)
+    if adjusted and adjusted[0].lead < settings.least_lead:
+        in_plane = found_plane_problem(views, pick, adjusted[0].solution.cylinder, adjusted[0].extent)
+        return (
+            [],
+            in_plane
+            or "pipes at two distances fit nearly as well; click where its edges are clearer, fix its diameter, or choose one of the alternatives",
+        )
     found: list[PipeCandidate] = []
-    adjusted = _adjusted(views, pick, tangents[0], find_cylinders(views, pick, tangents, settings), settings)
-    for candidate in adjusted:
-        if not any(_same(candidate, other) for other in found):
-            found.append(candidate)
-    completed = (_completed(views, candidate, pick, tangents[0], settings) for candidate in found)
-    answers = tuple(itertools.islice((c for c in completed if _in_range(c, views[pick.camera], settings)), candidates))
-    return () if candidates == 1 and answers and answers[0].lead < settings.least_lead else answers
+    for candidate in distinct(adjusted, lambda one, other: same_cylinder(other, one)):
+        completed = completed_pipe(views, candidate, pick, first, settings)
+        reason = _range_problem(views[pick.camera], completed, settings) or _objection(views, pick, completed, candidate, settings)
+        problem = problem or reason
+        if not reason:
+            found.append(completed)
+        # where the best cannot be right, the next one is no better an answer, only an alternative
+        if len(found) == candidates or (reason and candidates == 1 and _in_range(completed, views[pick.camera], settings)):
+            break
+    return found, "" if found else problem or no_fit(views, pick, first)
 
 
-def _adjusted(views: Sequence[View], pick: PipePick, tangents: PipeTangents, found: Sequence[Found], settings: PickSettings) -> list[PipeCandidate]:
-    """Adjust hypotheses over the clicked part with all images, their diameters held where they are a standard's."""
-    origin = views[pick.camera].camera.projection_centre
-    solutions: list[tuple[Found, CylinderSolution]] = []
-    for hypothesis in found:
-        start, end = clicked_extents(hypothesis.cylinder.as_many(), origin, tangents)[0]
-        held = None if pick.diameter == "free" else (hypothesis.cylinder.radius, HELD_RADIUS_SIGMA)
-        # edges measure best, but where they are other things' the place that texture and edges gave is better left
-        for how in (COARSE, UNMOVED):
-            solution = adjust_cylinder(views, hypothesis.cylinder, (float(start), float(end)), held, how)
-            if solution is not None:
-                solutions.append((hypothesis, solution))
-    if not solutions:
-        return []
-    series = np.array([hypothesis.size.series if hypothesis.size else 1 for hypothesis, _ in solutions], float)
-    cylinders = joined([solution.cylinder.as_many() for _, solution in solutions])
-    weights = weights_of(views, pick, tangents, cylinders, series, settings)
-    scores = weights.total
-    candidates = []
-    for hypothesis in found:
-        rows = [row for row, (owner, _) in enumerate(solutions) if owner is hypothesis]
-        if not rows:
-            continue
-        row = max(rows, key=lambda row: float(scores[row]) - (LEAST_GAIN if solutions[row][1].iterations == 0 else 0.0))
-        if weights.elsewhere[row] < settings.least_elsewhere:
-            continue
-        solution, score = solutions[row][1], float(scores[row])
-        diameter, sigma = 2 * solution.cylinder.radius, 2 * solution.sigma_radius
-        size = pipe_size(pick.diameter) if isinstance(pick.diameter, float) else hypothesis.size
-        extent = (-solution.half_length, solution.half_length)
-        poor = score < settings.least_score
-        candidates.append(PipeCandidate(solution, extent, size, np.inf, diameter, sigma, score, hypothesis.lead, approximate=poor))
-    return candidates
+def _from_one_image(
+    views: Sequence[View], pick: PipePick, tangents: PipeTangents, alone: str, settings: PickSettings
+) -> tuple[list[PipeCandidate], str]:
+    """Return the approximate pipe of a pick that no other image can show, or ``alone``, which says that, with what would help."""
+    if not isinstance(pick.diameter, float):
+        return [], f"{alone}, or give its diameter: then it is placed approximately from this image"
+    solution = solution_of_one_image(views[pick.camera], pick, pick.diameter, tangents)
+    if isinstance(solution, str):
+        return [], f"{alone}; {solution}"
+    diameter, extent = 2 * solution.cylinder.radius, (-solution.half_length, solution.half_length)
+    q = contour_quality(views, solution.cylinder, extent, settings)
+    candidate = PipeCandidate(solution, extent, pipe_size(diameter), q, diameter, 2 * solution.sigma_radius, 0.0, 0.0, approximate=True)
+    problem = _range_problem(views[pick.camera], candidate, settings)
+    return ([], problem) if problem else ([candidate], "")
 
 
-def _completed(views: Sequence[View], candidate: PipeCandidate, pick: PipePick, tangents: PipeTangents, settings: PickSettings) -> PipeCandidate:
-    """Follow the pipe to where its edges end and adjust it over all of its length, a standard diameter held."""
-    solution, extent = candidate.solution, candidate.extent
-    held = None if pick.diameter == "free" else (solution.cylinder.radius, HELD_RADIUS_SIGMA)
-    followed = extent_of(views, solution.cylinder, extent, settings.extent)
-    longer = _adjusted_over(views, pick, tangents, solution.cylinder, followed, held, settings)
-    if longer is not None and longer.support >= LEAST_SUPPORT * solution.support:
-        solution = longer
-        extent = extent_of(views, longer.cylinder, (-longer.half_length, longer.half_length), settings.extent)
-    poor = candidate.approximate or solution.support < LEAST_SEEN
-    free = adjust_cylinder(views, solution.cylinder, extent, None, FINAL) or solution
-    diameter, sigma = 2 * free.cylinder.radius, 2 * free.sigma_radius
-    if held is not None:
-        tolerance = np.hypot(max(settings.tolerance * diameter, settings.least_tolerance), 2 * sigma)
-        poor |= pick.diameter is None and abs(diameter - 2 * solution.cylinder.radius) > tolerance
-    lead = min(candidate.lead, lead_over_neighbours(views, pick, tangents, solution.cylinder, settings))
-    q = _final_quality(views, solution.cylinder, extent, settings)
-    poor |= q > WORST_QUALITY * settings.final_range
-    return replace(candidate, solution=solution, extent=extent, quality=q, diameter=diameter, sigma_diameter=sigma, lead=lead, approximate=bool(poor))
-
-
-def _adjusted_over(
-    views: Sequence[View],
-    pick: PipePick,
-    tangents: PipeTangents,
-    cylinder: Cylinder,
-    extent: tuple[float, float],
-    held: tuple[float, float] | None,
-    settings: PickSettings,
-) -> CylinderSolution | None:
-    """Adjust a pipe over all of its length, but not to edges on which its texture does not fit."""
-    wide = adjust_cylinder(views, cylinder, extent, held, FINAL)
-    unmoved = adjust_cylinder(views, cylinder, extent, held, UNMOVED)
-    if wide is None or unmoved is None or held is None:
-        return wide or unmoved
-    half = wide.half_length
-    ends = np.array([[-half, half]] * 2)
-    both = joined([wide.cylinder.as_many(), unmoved.cylinder.as_many()])
-    moved, weights = best_moved(views, pick, tangents, both, ends, np.ones(2), settings)
-    as_it_is = weights_of(views, pick, tangents, wide.cylinder.as_many(), 1.0, settings, ends[:1]).total[0]
-    row = int(np.argmax(weights.total))
-    if weights.total[row] < as_it_is + SURE_GAIN:
-        return wide
-    return adjust_cylinder(views, moved.one(row), (-half, half), held, UNMOVED) or wide
-
-
-def _final_quality(views: Sequence[View], cylinder: Cylinder, extent: tuple[float, float], settings: PickSettings) -> float:
-    along = np.linspace(*extent, 100)
-    distances = []
-    for view in views:
-        position, normal = (x.reshape(-1, 2) for x in outlines(view.camera, cylinder.as_many(), along[None]))
-        visible = np.isfinite(position[:, 0])
-        if np.count_nonzero(visible) >= settings.least_visible * len(position):
-            distances.append(match(view.edges, position[visible], normal[visible], settings.final_range).distance)
-    return float(quality(np.concatenate(distances), settings.final_range)) if distances else settings.final_range
+def _objection(views: Sequence[View], pick: PipePick, completed: PipeCandidate, candidate: PipeCandidate, settings: PickSettings) -> str:
+    """Return why what was found cannot be right or is not sure, or nothing; ``candidate`` is the clicked part of what was ``completed``."""
+    cylinder = completed.solution.cylinder
+    middle = float((candidate.solution.cylinder.point - cylinder.point) @ cylinder.direction)
+    clicked = (middle + candidate.extent[0], middle + candidate.extent[1])
+    problem = one_sided_problem(views, pick, cylinder, clicked)
+    if problem or completed.nearby_lead >= settings.least_nearby_lead:
+        return problem  # its surface may tell the distance where its edges cannot
+    return found_plane_problem(views, pick, cylinder, completed.extent) or UNSURE.format(settings.certain_within)
 
 
 def _in_range(candidate: PipeCandidate, view: View, settings: PickSettings) -> bool:
     """Tell whether the clicked part of a pipe lies in the working range."""
-    distance = float(np.linalg.norm(candidate.solution.cylinder.point - view.camera.projection_centre))
     near, far = settings.working_range
-    return near <= distance <= far
+    return near <= _distance(candidate, view) <= far
 
 
-def _same(one: PipeCandidate, other: PipeCandidate) -> bool:
-    """Tell whether two candidates are one cylinder: axes within a tenth of the diameter at both ends."""
-    ends = one.ends
-    offset = ends - other.solution.cylinder.point
-    offset -= np.outer(offset @ other.solution.cylinder.direction, other.solution.cylinder.direction)
-    return one.size == other.size and bool(np.linalg.norm(offset, axis=1).max() < 0.1 * other.diameter)
+def _distance(candidate: PipeCandidate, view: View) -> float:
+    return float(np.linalg.norm(candidate.solution.cylinder.point - view.camera.projection_centre))
+
+
+def _range_problem(view: View, candidate: PipeCandidate, settings: PickSettings) -> str:
+    """Return that a pipe is out of the working range, or nothing."""
+    if _in_range(candidate, view, settings):
+        return ""
+    near, far = settings.working_range
+    distance = _distance(candidate, view)
+    return f"the pipe is {distance:.0f} mm from the camera, outside the working range of {near:g} to {far:g} mm; widen the range"

@@ -22,7 +22,8 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.cylinder import Cylinder, perpendicular_axes
 from pipeworkbench.recon.inversion import inverse_2x2
-from pipeworkbench.recon.tangent_planes import ApparentPipe, StackedPlanes, TangentPlane, planes_of, unit
+from pipeworkbench.recon.tangent_planes import ApparentPipe, StackedPlanes, TangentPlane, planes_of
+from pipeworkbench.recon.vectors import across, unit
 
 PARAMETERS = 5  # two shifts and two tilts across the axis, the radius
 MOST_UNKNOWN_SIDES = 8  # each doubles the solutions to try
@@ -181,7 +182,7 @@ def cylinder_from_images(
     """
     found = cylinders_from_images(planes, cameras, settings)
     if len(found) > 1:
-        unknown = _names([plane.camera for plane in planes_of(planes) if not plane.side_known])
+        unknown = names_of([plane.camera for plane in planes_of(planes) if not plane.side_known])
         raise InputError(
             "the pipe",
             "",
@@ -440,7 +441,7 @@ def _refuse_too_few(planes: Sequence[TangentPlane]) -> None:
 
 
 def _impossible(planes: Sequence[TangentPlane], problem: str) -> InputError:
-    where = _names([plane.camera for plane in planes])
+    where = names_of([plane.camera for plane in planes])
     return InputError(
         "the pipe", "", f"the edges in {where} are not those of one pipe: {problem}", "pick both edges of the same pipe in each picture"
     )
@@ -460,8 +461,8 @@ def _intersection_error(planes: Sequence[TangentPlane], cameras: Sequence[Camera
         pair, helpful = None, []
     seen = "" if np.isnan(angle) else f" (they see it from directions {np.degrees(angle):.2g} deg apart)"
     return IntersectionError(
-        f"it lies in one plane with {_names(list(used.values()))}, so its depth cannot be measured with them{seen}",
-        f"pick it in {_names(helpful)} as well" if helpful else "give its diameter, or photograph it from another place",
+        f"it lies in one plane with {names_of(list(used.values()))}, so its depth cannot be measured with them{seen}",
+        f"pick it in {names_of(helpful)} as well" if helpful else "give its diameter, or photograph it from another place",
         angle,
         pair,
     )
@@ -472,7 +473,7 @@ def _identity(camera: Camera) -> tuple[str | float, ...]:
     return (camera.name, *camera.projection_centre.tolist())
 
 
-def _names(cameras: Sequence[Camera]) -> str:
+def names_of(cameras: Sequence[Camera]) -> str:
     """Return "camera left" or "cameras left, right and top"."""
     names = list(dict.fromkeys(camera.name for camera in cameras))
     return f"camera {names[0]}" if len(names) == 1 else f"cameras {', '.join(names[:-1])} and {names[-1]}"
@@ -480,8 +481,7 @@ def _names(cameras: Sequence[Camera]) -> str:
 
 def _offsets(centres: Array, axis: Cylinder) -> Array:
     """Return the vectors (n, 3) from centres to an axis, at right angles to it, mm."""
-    offset = axis.point - centres
-    return offset - (offset @ axis.direction)[:, None] * axis.direction
+    return across(axis.point - centres, axis.direction)
 
 
 def _distances(centres: Array, axis: Cylinder) -> Array:

@@ -3,17 +3,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pipeworkbench.pipeline import Pipe, Pipeline
-from pipeworkbench.recon.picks import Picks, PipePick
-from pipeworkbench.recon.pipes import PipeCandidate, from_pick
-from pipeworkbench.recon.search import PickSettings
+from pipeworkbench.pipeline import AnyComponent, Pipe, Pipeline
+from pipeworkbench.recon.assemble import complete
+from pipeworkbench.recon.candidates import PipeCandidate
+from pipeworkbench.recon.flanges import detect as detect_flanges
+from pipeworkbench.recon.flanges import of_picks as flanges_of_picks
+from pipeworkbench.recon.pick_settings import PickSettings
+from pipeworkbench.recon.picks import FailedPick, Picks, PipePick
+from pipeworkbench.recon.pipes import PickAnswer, answer_pick, from_pick
 from pipeworkbench.recon.station import Station
+from pipeworkbench.recon.vectors import as_vector, rounded
 from pipeworkbench.recon.views import View, views_of
 
 # Level of Accuracy of the U.S. Institute of Building Documentation: upper limits in mm at 95 %
@@ -24,11 +29,25 @@ COVERAGE_FACTOR = 2.0  # standard deviations in a 95 % interval
 
 @dataclass(frozen=True)
 class Reconstruction:
-    """What came out of a station: the pipeline and the indices of the picks that gave nothing."""
+    """What came out of a station.
+
+    ``failed_picks`` gave nothing, each with its reason; ``alternatives`` holds for each pick's index what it could mean
+    too, best first; ``warnings`` say what does not fit in the pipeline, in sentences.
+    """
 
     pipeline: Pipeline
-    failed_picks: tuple[int, ...]
-    skipped_picks: tuple[int, ...]
+    failed_picks: tuple[FailedPick, ...]
+    alternatives: dict[int, tuple[Alternative, ...]] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Alternative:
+    """One of the ranked answers of a pick: ``score`` is the logarithm of how much likelier it is than clutter."""
+
+    pipe: Pipe
+    score: float
+    chosen: bool
 
 
 def reconstruct(
@@ -36,14 +55,17 @@ def reconstruct(
     picks: Picks,
     settings: PickSettings | None = None,
     progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
+    alternatives: int = 1,
 ) -> Reconstruction:
-    """Reconstruct the pipes that were picked in a station.
+    """Reconstruct the pipes and flanges that were picked in a station.
 
     Parameters
     ----------
     station : Station
     picks : Picks
     settings : PickSettings, optional
+    alternatives : int
+        How many ranked answers are wanted for each pick at most.
     progress : callable
         Called with what is being done, how many steps are done and how many there are.
 
@@ -52,35 +74,52 @@ def reconstruct(
     InputError
         Where an image does not fit the station.
     """
-    steps = len(picks.pipes) + 1
+    steps = len(picks.pipes) + 2
     progress("finding edges", 0, steps)
     views = views_of(station)
-    pipes, failed = [], []
+    pipes: list[Pipe] = []
+    failed = list(picks.refused)
+    ranked: dict[int, tuple[Alternative, ...]] = {}
     # threads: the array operations release the interpreter lock, and nothing needs to be copied
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
-        running = [pool.submit(pipe_from_pick, views, pick, station, settings) for pick in picks.pipes]
+        running = [pool.submit(answer_pick, views, pick, settings, alternatives) for pick in picks.pipes]
         try:
             for done, (pick, future) in enumerate(zip(picks.pipes, running, strict=True), 1):
                 progress(f"pick {pick.index}", done, steps)
-                pipe = future.result()
-                if pipe is None:
-                    failed.append(pick.index)
+                answer = future.result()
+                if answer.chosen is None:
+                    failed.append(FailedPick(pick.index, answer.reason))
                 else:
-                    pipes.append(pipe)
+                    pipes.append(as_component(answer.chosen, pick, station.name))
+                if alternatives > 1:
+                    ranked[pick.index] = _alternatives(answer, pick, station.name, alternatives)
         except BaseException:
             # the user cancelled or a step failed: do not wait for picks that nobody wants
             pool.shutdown(wait=True, cancel_futures=True)
             raise
+    progress("flanges and elbows", steps - 1, steps)
+    flanges = flanges_of_picks(views, picks.flanges, pipes, station.name)
+    failed += [FailedPick(*failure) for failure in flanges.failures]
+    pipeline, warnings = _completed(views, (*pipes, *flanges.flanges), station)
     progress("done", steps, steps)
-    return Reconstruction(Pipeline.of_station(station.name, tuple(pipes)), tuple(failed), tuple(p.index for p in picks.flanges))
+    return Reconstruction(pipeline, tuple(sorted(failed)), ranked, warnings)
+
+
+def _alternatives(answer: PickAnswer, pick: PipePick, station: str, most: int) -> tuple[Alternative, ...]:
+    return tuple(
+        Alternative(as_component(candidate, pick, station), round(candidate.score, 2), candidate is answer.chosen)
+        for candidate in answer.ranked[:most]
+    )
 
 
 def reconstruct_without_picks(
     station: Station,
     settings: PickSettings | None = None,
     progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
+    *,
+    flanges: bool = False,
 ) -> Reconstruction:
-    """Reconstruct the pipes of a station without picks.
+    """Reconstruct the pipes of a station without picks, and what joins them.
 
     Parameters
     ----------
@@ -89,6 +128,8 @@ def reconstruct_without_picks(
         Its working range and diameters limit what is looked for.
     progress : callable
         Called with what is being done, how many steps are done and how many there are.
+    flanges : bool
+        Look for flanges along the pipes, too; that takes seconds.
 
     Raises
     ------
@@ -107,13 +148,23 @@ def reconstruct_without_picks(
     def report(text: str) -> None:
         nonlocal done
         done += 1
-        progress(text, done, STEPS + 1)
+        progress(text, done, STEPS + 2)
 
-    progress("finding edges", 0, STEPS + 1)
-    candidates = detect(views_of(station), limits, settings, report)
+    progress("finding edges", 0, STEPS + 2)
+    views = views_of(station)
+    candidates = detect(views, limits, settings, report)
     pipes = tuple(as_component(candidate, None, station.name, number) for number, candidate in enumerate(candidates))
-    progress("done", STEPS + 1, STEPS + 1)
-    return Reconstruction(Pipeline.of_station(station.name, pipes), (), ())
+    progress("flanges and elbows", STEPS + 1, STEPS + 2)
+    found = detect_flanges(views, pipes, station.name) if flanges else ()
+    pipeline, warnings = _completed(views, (*pipes, *found), station)
+    progress("done", STEPS + 2, STEPS + 2)
+    return Reconstruction(pipeline, (), {}, warnings)
+
+
+def _completed(views: Sequence[View], components: Sequence[AnyComponent], station: Station) -> tuple[Pipeline, tuple[str, ...]]:
+    """Return the pipeline of pipes and flanges with what lies between them, and what does not fit."""
+    found = complete(views, components, station=station.name)
+    return replace(Pipeline.of_station(station.name, found.components), joints=found.joints), found.warnings
 
 
 def pipe_from_pick(views: tuple[View, ...], pick: PipePick, station: Station, settings: PickSettings | None = None) -> Pipe | None:
@@ -125,8 +176,10 @@ def pipe_from_pick(views: tuple[View, ...], pick: PipePick, station: Station, se
 def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, number: int = 0) -> Pipe:
     """Return a candidate as a component of the pipeline; without a pick it is named after its ``number``."""
     solution, size = candidate.solution, candidate.size
-    start, end = ((float(x), float(y), float(z)) for x, y, z in candidate.ends)
+    start, end = (as_vector(point) for point in candidate.ends)
     sigma = solution.sigma_position
+    gaps = tuple((round(float(first), 1), round(float(last), 1)) for first, last in candidate.gaps - candidate.extent[0])
+    nearest = candidate.nearest_standard
     return Pipe(
         id=f"{station}-P{pick.index:02d}" if pick else f"{station}-A{number:02d}",
         start=start,
@@ -139,11 +192,13 @@ def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, 
         pick=pick.index if pick else None,
         station=station,
         quality=round(candidate.quality, 4),
-        sigma_position=(round(float(sigma[0]), 4), round(float(sigma[1]), 4), round(float(sigma[2]), 4)),
+        sigma_position=rounded(sigma, 4),
         sigma_direction_deg=round(float(np.degrees(solution.sigma_direction)), 5),
         sigma_outer_diameter=round(candidate.sigma_diameter, 4),
         loa=level_of_accuracy(float(np.linalg.norm(sigma))),
         approximate=candidate.approximate,
+        gaps=gaps or None,
+        nearest_standard=nearest.designation if nearest else None,
     )
 
 

@@ -42,7 +42,7 @@ def settle(views: Sequence[View], cylinders: Cylinders, extents_of: Callable[[Cy
             return cylinders
         extents = extents_of(cylinders)
         middle, half = extents.mean(axis=1), np.maximum(np.diff(extents, axis=1)[:, 0] / 2, 1.0)
-        moved = Cylinders(cylinders.points + middle[:, None] * cylinders.directions, cylinders.directions, cylinders.radii)
+        moved = Cylinders(cylinders.at(middle), cylinders.directions, cylinders.radii)
         cylinders = drawn_onto_edges(views, moved, half, reach, held=held)
         good = (cylinders.radii > 0) & np.isfinite(cylinders.points).all(axis=1)
         cylinders = cylinders[good]

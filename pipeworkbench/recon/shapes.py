@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Components as simple surfaces, in arrays: what a camera sees of them and what hides what.
 
-A pipe is a frustum (with equal radii), an elbow a part of a torus, a flange two frustums one behind the
-other: plate and neck; a tee two pipes, a reducer a frustum, a cap a row of them on its ellipse. Ends are
+A pipe is a frustum (with equal radii), an elbow a part of a torus, a flange frustums one behind the
+other: raised face, plate and neck; a tee two pipes, a reducer a frustum, a cap a row of them on its ellipse. Ends are
 closed with discs: pipework is opaque.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
+from pipeworkbench.pipeline import HUBBED_FLANGES, AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.vectors import unit
 
 STRAIGHT_DEG = 1e-3  # a bend by less is not a torus
 DISH = 0.25  # height over diameter of an ellipsoidal head with axes 2 : 1, as caps have it (EN 10253-2)
@@ -81,12 +82,15 @@ class Circles:
         return len(self.radius)
 
 
+S = TypeVar("S", Frustums, Tori, Circles)
+
+
 @dataclass(frozen=True, eq=False)
 class Shapes:
     """The surfaces of components.
 
-    ``frustums`` and ``tori`` with the ``part`` names of the former ("pipe", "rim", "neck"); ``discs`` close them;
-    ``edges`` are the sharp edges that a camera may see, with their ``edge_part`` ("face", "back").
+    ``frustums`` and ``tori`` with the ``part`` names of the former ("pipe", "rim", "neck", "raised face"); ``discs`` close them;
+    ``edges`` are the sharp edges that a camera may see, with their ``edge_part`` ("face", "back", "raised face", "hub end").
     """
 
     frustums: Frustums
@@ -96,6 +100,24 @@ class Shapes:
     edges: Circles
     edge_part: tuple[str, ...]
     count: int
+
+    def of(self, wanted: NDArray[np.bool_]) -> Shapes:
+        """Return the shapes of the wanted components (count,); owners keep their numbers."""
+        frustum, edge = wanted[self.frustums.owner], wanted[self.edges.owner]
+        return Shapes(
+            _rows(self.frustums, frustum),
+            tuple(np.array(self.part, object)[frustum]),
+            _rows(self.tori, wanted[self.tori.owner]),
+            _rows(self.discs, wanted[self.discs.owner]),
+            _rows(self.edges, edge),
+            tuple(np.array(self.edge_part, object)[edge]),
+            self.count,
+        )
+
+
+def _rows(surfaces: S, rows: NDArray[np.bool_]) -> S:
+    """Return some of the surfaces."""
+    return type(surfaces)(*(getattr(surfaces, f.name)[rows] for f in fields(surfaces)))
 
 
 def shapes_of(components: Sequence[AnyComponent]) -> Shapes:
@@ -162,18 +184,35 @@ class _Rows:
             self.discs.append((centre + bend_radius * outwards, np.cross(axis, outwards), tube_radius, owner))
 
     def add_flange(self, owner: int, flange: Flange) -> None:
-        face, axis = np.array(flange.face, float), -_unit(flange.axis)
-        back = face + flange.C * axis
-        self.add_frustum(owner, "rim", tuple(face), tuple(back), flange.D, flange.D)
-        for centre, name in ((face, "face"), (back, "back")):
+        face, axis = np.array(flange.face, float), -unit(flange.axis)
+        height = flange.raised_face_height if flange.raised_face_diameter else None
+        front, back = face + (height or 0.0) * axis, face + flange.C * axis
+        self.add_frustum(owner, "rim", tuple(front), tuple(back), flange.D, flange.D)
+        for centre, name in ((front, "face"), (back, "back")):
             self.edges.append((centre, axis, flange.D / 2, owner))
             self.edge_part.append(name)
+        if height and flange.raised_face_diameter:
+            self.add_frustum(owner, "raised face", tuple(face), tuple(front), flange.raised_face_diameter, flange.raised_face_diameter)
+            self.edges.append((face, axis, flange.raised_face_diameter / 2, owner))
+            self.edge_part.append("raised face")
         if flange.length > flange.C:
-            root = min(flange.neck_diameter or flange.outer_diameter, flange.D)
-            self.add_frustum(owner, "neck", tuple(back), tuple(face + flange.length * axis), root, flange.outer_diameter)
+            self._add_neck(owner, flange, back, face + flange.length * axis, axis)
+
+    def _add_neck(self, owner: int, flange: Flange, back: Array, end: Array, axis: Array) -> None:
+        """Add what stands on the plate: a hub, straight to its end, or a cone that tapers to the pipe."""
+        root = min(flange.neck_diameter or flange.outer_diameter, flange.D)
+        if flange.flange_type in HUBBED_FLANGES:
+            self.add_frustum(owner, "neck", tuple(back), tuple(end), root, root)
+            self.edges.append((end, axis, root / 2, owner))
+            self.edge_part.append("hub end")
+            return
+        straight = min(flange.neck_straight or 0.0, (flange.length - flange.C) / 2)
+        self.add_frustum(owner, "neck", tuple(back), tuple(end - straight * axis), root, flange.outer_diameter)
+        if straight:
+            self.add_frustum(owner, "neck", tuple(end - straight * axis), tuple(end), flange.outer_diameter, flange.outer_diameter)
 
     def add_cap(self, owner: int, cap: Cap) -> None:
-        start, axis, diameter = np.array(cap.start, float), _unit(cap.axis), cap.outer_diameter
+        start, axis, diameter = np.array(cap.start, float), unit(cap.axis), cap.outer_diameter
         dish = min(DISH * diameter, cap.length)
         if cap.length > dish:
             self.add_frustum(owner, "pipe", tuple(start), tuple(start + (cap.length - dish) * axis), diameter, diameter)
@@ -184,18 +223,13 @@ class _Rows:
             self.add_frustum(owner, "cap", here, there, float(width[step]), float(width[step + 1]))
 
 
-def _unit(vector: Sequence[float]) -> Array:
-    array = np.array(vector, float)
-    return array / np.linalg.norm(array)
-
-
 def _torus_of(elbow: Elbow) -> tuple[Array, Array, Array, float, float, float]:
     """Return centre, axis, first direction, angle, bend radius and tube radius of an elbow."""
     corner = np.array(elbow.intersection, float)
     come, go = corner - np.array(elbow.start, float), np.array(elbow.end, float) - corner
     if min(np.linalg.norm(come), np.linalg.norm(go)) == 0:
         raise InputError(elbow.id, "intersection", "coincides with an end of the elbow", "give the point where both axes meet")
-    come, go = _unit(come), _unit(go)
+    come, go = unit(come), unit(go)
     normal = np.cross(come, go)
     angle = float(np.arctan2(np.linalg.norm(normal), come @ go))
     if angle < np.radians(STRAIGHT_DEG):

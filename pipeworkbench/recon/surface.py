@@ -73,7 +73,7 @@ def _frame(views: Sequence[View], cylinders: Cylinders, extents: Array) -> tuple
     """Return points on the axes (k, 3, 3), unit vectors across the axes and the sight (k, 3) and towards the cameras (k, 3)."""
     centre = np.mean([view.camera.projection_centre for view in views], axis=0)
     axis = cylinders.points[:, None] + spread(extents, ALONG)[:, :, None] * cylinders.directions[:, None]
-    sight = cylinders.points + extents.mean(axis=1)[:, None] * cylinders.directions - centre
+    sight = cylinders.at(extents.mean(axis=1)) - centre
     sideways = np.cross(cylinders.directions, sight)
     sideways /= np.linalg.norm(sideways, axis=1, keepdims=True)
     towards = np.cross(cylinders.directions, sideways)

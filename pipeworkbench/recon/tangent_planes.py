@@ -6,7 +6,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +14,7 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.picks import LEAST_LENGTH_PX, SAME_EDGE_PX
 from pipeworkbench.recon.tangents import CLICK_SIGMA_PX
+from pipeworkbench.recon.vectors import unit
 
 WEIGHTINGS = 2  # of the rays of one plane: how much a pixel is worth depends on the plane, but hardly
 
@@ -224,11 +224,6 @@ def apparent_pipe(
 def planes_of(planes: Sequence[TangentPlane | ApparentPipe]) -> tuple[TangentPlane, ...]:
     """Return all planes in the order given, both of each apparent pipe."""
     return tuple(itertools.chain.from_iterable(p.edges if isinstance(p, ApparentPipe) else (p,) for p in planes))
-
-
-def unit(vector: Any) -> Array:
-    """Return a vector scaled to the length one."""
-    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def _ends(half_angle: float) -> Array:

@@ -61,6 +61,19 @@ def hidden(centre: Array, points: Array, shapes: Shapes, owners: NDArray[np.intp
     return by_itself, by_others
 
 
+def hidden_in_alternatives(
+    centre: Array, points: Array, shapes: Shapes, owners: NDArray[np.intp], tolerance: float, alternatives: NDArray[np.intp]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Do what :func:`hidden` does where only components of one alternative (k,) can hide each other."""
+    by_itself, by_others = np.zeros(len(points), bool), np.zeros(len(points), bool)
+    own = alternatives[owners]
+    for alternative in np.unique(own):
+        rows = np.flatnonzero(own == alternative)
+        few = shapes.of(alternatives == alternative)
+        by_itself[rows], by_others[rows] = hidden(centre, points[rows], few, owners[rows], tolerance)
+    return by_itself, by_others
+
+
 def _frustum_hits(centre: Array, rays: Array, frustums: Frustums) -> Array:
     """Return distances (n, k, 2) along rays (n, 3) to the lateral surfaces, inf where they miss."""
     from_start = centre - frustums.start

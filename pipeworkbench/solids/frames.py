@@ -21,6 +21,7 @@ import numpy as np
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Matrix, Pipe, Reducer, Tee, Vector
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.vectors import across, angle_between
 
 UP = (0.0, 0.0, 1.0)  # of a levelled station's frame
 SAME_DIRECTION = 1e-6  # sine of the angle below which two directions count as parallel
@@ -89,7 +90,7 @@ def _frame(name: str, key: str, origin: Array, z: Array, towards: Array, *, must
     if min(lengths) <= SAME_POINT_MM:
         raise InputError(name, key, "two points or directions that must differ are the same", "correct the component's points")
     z, towards = z / lengths[0], towards / lengths[1]
-    x = towards - (towards @ z) * z
+    x = across(towards, z)
     if np.linalg.norm(x) <= SAME_DIRECTION:
         if must_differ:
             raise InputError(name, key, "both axes are parallel", "leave the component out: the pipes meet in a line")
@@ -102,7 +103,7 @@ def _frame(name: str, key: str, origin: Array, z: Array, towards: Array, *, must
 def bend_angle(elbow: Elbow) -> float:
     """Return the angle (rad) between an elbow's axes, from its points."""
     come, go = np.subtract(elbow.intersection, elbow.start), np.subtract(elbow.end, elbow.intersection)
-    return float(np.arctan2(np.linalg.norm(np.cross(come, go)), come @ go))
+    return angle_between(come, go)
 
 
 def local_point(frame: Frame, point: Vector) -> Array:

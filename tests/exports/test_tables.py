@@ -56,8 +56,32 @@ def test_verified_dimensions_are_not_marked():
     assert dict(zip(TERMINAL_COLUMNS, terminal_row(DN40), strict=True))["remarks"] == ""
 
 
+def test_bridged_gaps_and_the_nearest_standard_are_told(tmp_path):
+    pipe = Pipe(
+        id="A-P02", start=(0.0, 0.0, 0.0), end=(0.0, 0.0, 800.0), outer_diameter=60.1, gaps=((54.2, 132.0), (300.0, 340.5)), nearest_standard="DN 50"
+    )
+    remarks = dict(zip(TERMINAL_COLUMNS, terminal_row(pipe), strict=True))["remarks"]
+    assert remarks == "within 3 sigma of DN 50, bridged at 54-132, 300-340 mm"
+    write_csv(Pipeline.of_station("A", (pipe,)), tmp_path / "pipes.csv")
+    with (tmp_path / "pipes.csv").open(encoding="utf-8", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert (row["gaps_mm"], row["nearest_standard"]) == ("54.2-132 300-340.5", "DN 50")
+
+
 def test_what_is_not_known_is_left_empty(rows):
-    for column in ("pick", "station", "standard", "dn", "wall_thickness_mm", "verified_sources", "quality_px", "sigma_y_mm", "loa"):
+    for column in (
+        "pick",
+        "station",
+        "standard",
+        "dn",
+        "wall_thickness_mm",
+        "verified_sources",
+        "quality_px",
+        "sigma_y_mm",
+        "loa",
+        "gaps_mm",
+        "nearest_standard",
+    ):
         assert rows[2][column] == ""
 
 

@@ -15,7 +15,7 @@ from pipeworkbench.pipeline import Pipe, Pipeline
 DN40 = Pipe(
     id="A-P00", start=(100.0, 3600.0, -50.0), end=(100.0, 3900.0, 350.0), outer_diameter=48.3, wall_thickness=2.6, dn=40,
     standard="EN 10220", verified=2, pick=0, station="A", quality=0.4, sigma_position=(0.1, 0.3, 0.05), sigma_direction_deg=0.02,
-    sigma_outer_diameter=0.03, loa="LOA40", extra={"note": "kept"},
+    sigma_outer_diameter=0.03, loa="LOA40", gaps=((100.0, 150.5), (300.0, 320.0)), nearest_standard="DN 40", extra={"note": "kept"},
 )  # fmt: skip
 
 
@@ -39,6 +39,13 @@ def test_pipe_is_hollow_and_lies_between_its_ends(document):
     assert obj.Shape.Volume == pytest.approx(volume(48.3, 2.6, 500), rel=1e-6)
     middle = obj.Shape.CenterOfMass
     assert tuple(middle) == pytest.approx((100, 3750, 150), abs=1e-6)
+
+
+def test_bridged_gaps_belong_to_the_measurement(document):
+    obj = add_component(document, DN40)
+    assert (component_of(obj).gaps, component_of(obj).nearest_standard) == (DN40.gaps, DN40.nearest_standard)
+    obj.Length = "1.2 m"
+    assert (component_of(obj).gaps, component_of(obj).nearest_standard) == (None, None)
 
 
 def test_solid_follows_the_properties(document):

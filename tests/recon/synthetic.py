@@ -170,3 +170,25 @@ def station(folder: Path, count=3):
     """Return the station itself, without pictures."""
     made = cameras(count)
     return Station("synthetic", made, tuple(folder / f"{camera.name}.png" for camera in made), folder / "station.json")
+
+
+def edge_view(camera: Camera, components, seed=0, noise_px=0.15, seen=0.9):
+    """Return a view whose edges are the visible contours of components, with noise; a part ``seen`` of them is there."""
+    from pipeworkbench.recon.contour import contour_of
+    from pipeworkbench.recon.edges import EdgeMap, _fill
+    from pipeworkbench.recon.views import View
+
+    random = np.random.default_rng(seed)
+    found = contour_of(camera, components, 1.0, 1.0)
+    # whole stretches of 8 px are missing, as they are in photographs
+    stretch = (found.parameter * 1e4).astype(int) // 50 + 1000 * found.curve
+    there = random.uniform(size=stretch.max() + 1)[stretch] < seen
+    found = found[found.visible & there]
+    width, height = camera.interior.width, camera.interior.height
+    position = np.clip(found.position + random.normal(0, noise_px, len(found))[:, None] * found.normal, 3, (width - 4, height - 4))
+    pixel = np.rint(position).astype(np.int32)
+    index = np.full((height, width), -1, np.int32)
+    _fill(index, pixel, position)
+    ones = np.ones(len(found))
+    edges = EdgeMap(position, found.normal, 20 * ones, 60 * ones, 0.8 * ones, 0.1 * ones, 1.2 * ones, pixel, index)
+    return View(camera, edges, np.zeros((height, width), np.float32))

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from synthetic import DN100, TARGET, pick, pipe, station, views, views_of_dn100
 
-from pipeworkbench.recon.pipes import PickSettings, from_pick
+from pipeworkbench.recon.pick_settings import PickSettings
+from pipeworkbench.recon.pipes import from_pick
 from pipeworkbench.recon.reconstruct import as_component, level_of_accuracy, pipe_from_pick
 
 pytestmark = pytest.mark.slow  # a search takes seconds

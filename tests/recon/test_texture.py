@@ -9,10 +9,10 @@ import pytest
 from synthetic import HEIGHT, WIDTH, cameras, pick, pipe, views
 
 from pipeworkbench.recon.cylinder import Cylinders
-from pipeworkbench.recon.search import Weights, outermost_first
 from pipeworkbench.recon.tangents import all_tangents_of, tangents_of
 from pipeworkbench.recon.texture import texture
 from pipeworkbench.recon.views import View
+from pipeworkbench.recon.weights import Weights, outermost_first
 
 TRUTH = pipe(114.3, (10.0, 5.0))
 EXTENT = np.array([[-150.0, 150.0]])

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Vectors and straight lines in space: what several steps need of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pipeworkbench.pipeline import Vector
+from pipeworkbench.recon.camera import Array
+
+
+def as_vector(array: Array) -> Vector:
+    """Return an array (3,) as components hold it."""
+    x, y, z = (float(value) for value in array)
+    return x, y, z
+
+
+def rounded(array: Array, digits: int) -> Vector:
+    """Return an array (3,) as components hold it, with so many digits behind the point."""
+    x, y, z = (round(float(value), digits) for value in array)
+    return x, y, z
+
+
+def unit(vector: Any) -> Array:
+    """Return the unit vector of the same direction (n,)."""
+    array = np.asarray(vector, float)
+    return array / np.linalg.norm(array)
+
+
+def across(vectors: Array, direction: Array) -> Array:
+    """Return the part of vectors (..., 3) at right angles to a unit direction (3,)."""
+    return np.asarray(vectors - (vectors @ direction)[..., None] * direction)
+
+
+def nearest_on_line(point: Array, start: Array, direction: Array) -> Array:
+    """Return the point (3,) nearest to another on the line through ``start`` (3,) along a unit direction (3,), all in mm."""
+    return np.asarray(start + ((point - start) @ direction) * direction)
+
+
+def angle_between(one: Array, other: Array) -> float:
+    """Return the angle between two directions (3,), 0 to pi rad; sharp for small angles too."""
+    return float(np.arctan2(np.linalg.norm(np.cross(one, other)), one @ other))
