@@ -16,7 +16,7 @@ from pipeworkbench.recon.flanges import detect as detect_flanges
 from pipeworkbench.recon.flanges import of_picks as flanges_of_picks
 from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.picks import FailedPick, Picks, PipePick
-from pipeworkbench.recon.pipes import PickAnswer, answer_pick, from_pick
+from pipeworkbench.recon.pipes import PickAnswer, answer_pick
 from pipeworkbench.recon.station import Station
 from pipeworkbench.recon.vectors import as_vector, rounded
 from pipeworkbench.recon.views import View, views_of
@@ -165,12 +165,6 @@ def _completed(views: Sequence[View], components: Sequence[AnyComponent], statio
     """Return the pipeline of pipes and flanges with what lies between them, and what does not fit."""
     found = complete(views, components, station=station.name)
     return replace(Pipeline.of_station(station.name, found.components), joints=found.joints), found.warnings
-
-
-def pipe_from_pick(views: tuple[View, ...], pick: PipePick, station: Station, settings: PickSettings | None = None) -> Pipe | None:
-    """Return the best pipe for a pick, None where no cylinder fits the images."""
-    candidates = from_pick(views, pick, settings)
-    return as_component(candidates[0], pick, station.name) if candidates else None
 
 
 def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, number: int = 0) -> Pipe:

@@ -146,11 +146,6 @@ class SnappedEdge:
         return self.normal if self.normal @ ray <= 0 else -self.normal
 
 
-def snapped_edge(view: View, end_rays: Array) -> SnappedEdge:
-    """Draw a clicked line onto the image edge it most likely means; see :func:`snapped_edges`."""
-    return snapped_edges(view, end_rays)[0]
-
-
 def snapped_edges(view: View, end_rays: Array) -> list[SnappedEdge]:
     """Return the image edges that a clicked line could mean, the most likely first.
 

@@ -3,11 +3,11 @@
 
 import numpy as np
 import pytest
-from synthetic import DN100, TARGET, pick, pipe, station, views, views_of_dn100
+from synthetic import DN100, TARGET, pick, pipe, views, views_of_dn100
 
 from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.pipes import from_pick
-from pipeworkbench.recon.reconstruct import as_component, level_of_accuracy, pipe_from_pick
+from pipeworkbench.recon.reconstruct import as_component, level_of_accuracy
 
 pytestmark = pytest.mark.slow  # a search takes seconds
 
@@ -78,23 +78,23 @@ def test_free_diameter_is_estimated(diameter):
     assert_is(candidate, truth)
 
 
-def test_free_diameter_is_what_the_component_has(tmp_path):
+def test_free_diameter_is_what_the_component_has():
     truth = pipe(95.0)
     clicked = pick(0, truth, diameter="free")
-    component = pipe_from_pick(views([truth], seed=40), clicked, station(tmp_path))
+    component = as_component(from_pick(views([truth], seed=40), clicked)[0], clicked, "synthetic")
     assert component.outer_diameter == pytest.approx(95.0, abs=0.6)
     assert (component.dn, component.standard, component.wall_thickness, component.verified) == (None, None, None, None)
 
 
 @pytest.mark.parametrize("fixed", [114.3, 113.5])
-def test_fixed_diameter_is_kept(seen, tmp_path, fixed):
+def test_fixed_diameter_is_kept(seen, fixed):
     clicked = pick(0, DN100, diameter=fixed)
-    component = pipe_from_pick(seen, clicked, station(tmp_path))
+    component = as_component(from_pick(seen, clicked)[0], clicked, "synthetic")
     assert component.outer_diameter == pytest.approx(fixed, abs=0.15)
     assert component.dn == (100 if fixed == 114.3 else None)
 
 
-def test_component_says_what_is_known_of_it(seen, tmp_path):
+def test_component_says_what_is_known_of_it(seen):
     clicked = pick(0, DN100)
     (candidate,) = from_pick(seen, clicked)
     component = as_component(candidate, clicked, "synthetic")
