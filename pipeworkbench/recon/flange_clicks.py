@@ -57,7 +57,7 @@ def axes_of_click(
         raise InputError(
             name,
             "point",
-            f"is {distance:.0f} mm from the nearest pipe {pipe_id}, whose largest flange has a radius of {radius:g} mm",
+            f"the click is {distance:.0f} mm from the nearest pipe {pipe_id}, whose largest flange has a radius of {radius:g} mm",
             "click on the straight edge of the rim, or pick the flange's pipe first",
         )
     nearest_first = [(axis, places) for _, axis, places in sorted(reachable, key=lambda item: item[0])]

@@ -89,7 +89,7 @@ def from_pick(
     view = views[pick.camera]
     if not view.camera.sees(pick.point[None])[0]:
         u, v = pick.point
-        raise InputError(name, "point", f"({u:g}, {v:g}) is outside the image of camera '{view.camera.name}'", "click inside the image")
+        raise InputError(name, "point", f"the click at ({u:g}, {v:g}) is outside the image of camera '{view.camera.name}'", "click inside the image")
     if not pipes:
         raise InputError(name, "point", "there is no pipe that a flange could sit on", "pick the flange's pipe as well")
     hidden_by = [*pipes, *others]
