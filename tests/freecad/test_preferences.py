@@ -7,8 +7,8 @@ import pytest
 from pipeworkbench.catalogue import catalogue, pipe_size, use_folder
 from pipeworkbench.errors import InputError
 from pipeworkbench.exports.fcstd import write_fcstd
-from pipeworkbench.features.document import pipes_in
-from pipeworkbench.features.pipe import add_pipe
+from pipeworkbench.features.document import components_in
+from pipeworkbench.features.kinds import add_component
 from pipeworkbench.features.preferences import CATALOGUE_FOLDER, PREFERENCES, start_with_preferred_catalogue, use_preferred_catalogue
 from pipeworkbench.pipeline import Pipe, Pipeline
 
@@ -46,7 +46,7 @@ def test_tables_of_the_preferred_folder_are_used_until_it_is_no_longer_named(tab
 
 def test_pipe_takes_a_size_of_the_users_table(tables, document):
     use_preferred_catalogue()
-    obj = add_pipe(document, PIPE)
+    obj = add_component(document, PIPE)
     obj.NominalDiameter = "DN 40"
     assert (obj.OutsideDiameter.Value, obj.WallThickness.Value) == (48.3, 2.6)  # the usual one of the two
     obj.NominalDiameter = "DN 41"
@@ -58,7 +58,7 @@ def test_pipe_takes_a_size_of_the_users_table(tables, document):
 
 def test_second_outside_diameter_of_a_nominal_one_stays_as_it_was_typed(tables, document):
     use_preferred_catalogue()
-    obj = add_pipe(document, PIPE)
+    obj = add_component(document, PIPE)
     assert obj.getEnumerationsOfProperty("NominalDiameter").count("DN 40") == 1
     for diameter in (47.0, 48.3, 47.0):
         obj.OutsideDiameter = diameter
@@ -78,5 +78,5 @@ def test_written_document_knows_the_sizes_of_whoever_wrote_it(tables, tmp_path, 
     path = tmp_path / "pipes.FCStd"
     write_fcstd(Pipeline.of_station("A", (PIPE,)), path)
     opened = FreeCAD.openDocument(str(path))
-    (obj,) = pipes_in(opened)
+    (obj,) = components_in(opened)
     assert obj.NominalDiameter == "DN 41"
