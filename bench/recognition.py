@@ -189,7 +189,8 @@ def picture(scene, views, answer):
         if number == answer.pick.camera:
             lines += [(edge, YELLOW) for edge in answer.pick.edges]
         panels.append(panel(read_image(scene.station, number), lines, view.camera.name))
-    whole = np.hstack(panels)
+    height = max(one.shape[0] for one in panels)
+    whole = np.hstack([np.pad(one, ((0, height - one.shape[0]), (0, 0), (0, 0)), constant_values=255) for one in panels])
     text = f"{scene.name} {answer.truth} (pick {answer.pick.index}, {scene.pipes[answer.truth]['outer_diameter']:g} mm) {answer.caption}"
     return np.vstack([whole, caption(text, whole.shape[1])])
 
@@ -204,7 +205,7 @@ def panel(image, lines, name):
     scale = PANEL_PX / max(*(high - low), 1)
     how = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
     part = cv2.resize(image[low[1] : high[1], low[0] : high[0]], None, fx=scale, fy=scale, interpolation=how)[:PANEL_PX, :PANEL_PX]
-    shown = np.full((CAPTION_PX + PANEL_PX, max(part.shape[1], NARROWEST_PX), 3), 255, np.uint8)
+    shown = np.full((CAPTION_PX + part.shape[0], max(part.shape[1], NARROWEST_PX), 3), 255, np.uint8)
     shown[:CAPTION_PX] = caption(name, shown.shape[1])
     below = shown[CAPTION_PX:]
     below[: part.shape[0], : part.shape[1]] = part[:, :, None]
