@@ -23,6 +23,7 @@ from pipeworkbench.recon.views import View
 LEAST_SAMPLES, MOST_SAMPLES = 8, 1000  # along one edge in one view
 NOT_CONVERGED = "the largest number of iterations was reached"
 NOT_MOVED = "not moved: no iterations were asked for"
+HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
 PARAMETERS = 5  # two shifts and two tilts across the axis, the radius
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from pipeworkbench.catalogue import pipe_size
-from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
+from pipeworkbench.recon.adjust import HELD_RADIUS_SIGMA, AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.candidates import PipeCandidate
 from pipeworkbench.recon.cylinder import Cylinder, joined
 from pipeworkbench.recon.extent import extent_of
@@ -26,7 +26,6 @@ from pipeworkbench.recon.weights import clicked_extents, weights_of
 COARSE = AdjustSettings(spacing=6.0, ranges=(3.0,), iterations=4)  # enough to compare candidates
 UNMOVED = AdjustSettings(spacing=6.0, ranges=(1.5,), iterations=0)
 FINAL = AdjustSettings(ranges=(2.0, 1.5))  # what is settled must not wander off to a neighbour
-HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
 SURE_GAIN = 5.0  # logarithm; what a place must gain over the one that the edges of a whole pipe give
 LEAST_SEEN = 0.35  # part of all samples that must find an edge, else the pipe is approximate
 WORST_QUALITY = 0.75  # of the quality's search range; near it most edges are missing or others'

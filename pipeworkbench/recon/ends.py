@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pipeworkbench.pipeline import AnyComponent, Pipe
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.vectors import across
 
 Found = TypeVar("Found")
 
@@ -79,6 +80,14 @@ def line_of(pipe: Pipe) -> tuple[Array, Array]:
 def segments_of(pipes: Sequence[Pipe]) -> tuple[Array, Array]:
     """Return where the axes of pipes start and end (p, 3), mm."""
     return np.array([pipe.start for pipe in pipes]).reshape(-1, 3), np.array([pipe.end for pipe in pipes]).reshape(-1, 3)
+
+
+def shared_course(one: Pipe, other: Pipe) -> tuple[float, Array]:
+    """Return over which length, in mm along the axis of ``one``, another pipe runs beside it, and how far aside its ends (2,) are."""
+    start, axis = line_of(one)
+    offsets = np.array([other.start, other.end]) - start
+    along = offsets @ axis
+    return float(min(one.length, along.max()) - max(0.0, along.min())), np.linalg.norm(across(offsets, axis), axis=1)
 
 
 def each_end_once(found: Iterable[Found], ends: Callable[[Found], tuple[Hashable, Hashable]]) -> list[Found]:
@@ -176,8 +185,8 @@ def in_line(
         direction, diameter = ends.direction[rows], ends.diameter[rows, None]
         cosine = direction @ axis.T
         to_start = starts[None] - corners.corner[:, None]
-        across = np.linalg.norm(np.cross(to_start, axis[None]), axis=2)
-        parallel = (np.abs(cosine) >= np.cos(angle)) & (across < offset * diameter)
+        aside = np.linalg.norm(np.cross(to_start, axis[None]), axis=2)
+        parallel = (np.abs(cosine) >= np.cos(angle)) & (aside < offset * diameter)
         # from where to where each pipe reaches, counted from the corner along the end's direction
         low = np.einsum("cpi,ci->cp", to_start, direction)
         high = low + cosine * length

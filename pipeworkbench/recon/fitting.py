@@ -12,7 +12,7 @@ from pipeworkbench.pipeline import AnyComponent, Elbow, Flange, Pipe, Tee
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.caps import FoundCap
 from pipeworkbench.recon.elbows import FoundElbow
-from pipeworkbench.recon.ends import line_of
+from pipeworkbench.recon.ends import line_of, shared_course
 from pipeworkbench.recon.reducers import FoundReducer
 from pipeworkbench.recon.tees import FoundTee
 from pipeworkbench.recon.vectors import angle_between, as_vector, nearest_on_line
@@ -99,19 +99,11 @@ def _pipe_of_flange(components: Sequence[AnyComponent], flange: Flange) -> tuple
 
 def _is_known(piece: Pipe, components: Sequence[AnyComponent]) -> bool:
     """Tell whether another pipe of the same diameter runs where a piece does, over a part of it."""
-    start, direction = line_of(piece)
-    for pipe in components:
-        if (
-            not isinstance(pipe, Pipe)
-            or pipe.id == piece.id
-            or abs(pipe.outer_diameter - piece.outer_diameter) > SAME_DIAMETER * piece.outer_diameter
-        ):
-            continue
-        ends = np.array([pipe.start, pipe.end])
-        along = np.sort((ends - start) @ direction)
-        beside = np.linalg.norm(ends - start - ((ends - start) @ direction)[:, None] * direction, axis=1)
-        overlap = min(along[1], piece.length) - max(along[0], 0.0)
-        if beside.max() < KNOWN_OFF_AXIS * piece.outer_diameter and overlap > KNOWN_OVERLAP * min(piece.length, pipe.length):
+    alike = SAME_DIAMETER * piece.outer_diameter
+    others = [c for c in components if isinstance(c, Pipe) and c.id != piece.id and abs(c.outer_diameter - piece.outer_diameter) <= alike]
+    for pipe in others:
+        shared, aside = shared_course(piece, pipe)
+        if aside.max() < KNOWN_OFF_AXIS * piece.outer_diameter and shared > KNOWN_OVERLAP * min(piece.length, pipe.length):
             return True
     return False
 

@@ -38,13 +38,8 @@ def best_moved(
     Edges draw a contour to the nearest row only, which may be a joint of a wall: the moves find the row
     with which the texture fits too.
     """
-    camera = views[pick.camera].camera
-    variants = joined([cylinders, _moved(cylinders, extents, views, camera.projection_centre, camera.interior.pixels_per_radian, MOVES_PX, TILTS_PX)])
+    variants, spans = _with_moved(views, pick, cylinders, extents, MOVES_PX, TILTS_PX)
     count = len(variants) // len(cylinders)
-    lengths = np.tile(np.diff(extents, axis=1)[:, 0] / 2, count)
-    middle = np.tile(extents.mean(axis=1), count)
-    middle[len(cylinders) :] = 0.0  # moved ones have their point there
-    spans = np.stack([middle - lengths, middle + lengths], axis=1)
     weights = weights_of(views, pick, tangents, variants, np.tile(series, count), settings, spans)
     total = weights.total.reshape(count, -1)
     total[0] += LEAST_GAIN
@@ -65,19 +60,19 @@ def lead_over_neighbours(views: Sequence[View], pick: PipePick, tangents: PipeTa
     distance = float(np.linalg.norm(cylinder.at(float(extents.mean())) - origin))
     # less than a pixel of parallax does not show
     step = max(settings.certain_within / distance**2 * longest_base(views, origin) * pixels_per_radian, 1.0)
-    moved = _moved(own, extents, views, origin, pixels_per_radian, step * RIVAL_MOVES, RIVAL_TILTS_PX)
-    half = np.full(len(moved), np.ptp(extents) / 2)
-    score = weights_of(views, pick, tangents, own, 1.0, settings, extents).total[0]
-    return float(score - weights_of(views, pick, tangents, moved, 1.0, settings, np.stack([-half, half], axis=1)).total.max())
+    variants, spans = _with_moved(views, pick, own, extents, step * RIVAL_MOVES, RIVAL_TILTS_PX)
+    total = weights_of(views, pick, tangents, variants, 1.0, settings, spans).total
+    return float(total[0] - total[1:].max())
 
 
-def _moved(
-    cylinders: Cylinders, extents: Array, views: Sequence[View], origin: Array, pixels_per_radian: float, moves: Array, tilts: Array
-) -> Cylinders:
-    """Return the cylinders with their ends moved along the rays from the picked camera, all of the first move first.
+def _with_moved(views: Sequence[View], pick: PipePick, cylinders: Cylinders, extents: Array, moves: Array, tilts: Array) -> tuple[Cylinders, Array]:
+    """Return the cylinders, then all of them moved and tilted in every way, and what is compared of each (rows, 2), mm along the axes.
 
-    In the picked image they stay where they are; in the others they move by ``moves`` and turn by ``tilts``, px at the longest base.
+    Their ends move along the rays from the picked camera: in its image they stay where they are; in the others
+    they move by ``moves`` and turn by ``tilts``, px at the longest base. All of the first move come first.
     """
+    camera = views[pick.camera].camera
+    origin, pixels_per_radian = camera.projection_centre, camera.interior.pixels_per_radian
     base = longest_base(views, origin)
     middle, tilt = (x.ravel() for x in np.meshgrid(moves, tilts))
     ends = []
@@ -88,7 +83,10 @@ def _moved(
         ends.append((origin + towards / (1 + nearer)[..., None]).reshape(-1, 3))
     directions = ends[1] - ends[0]
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    return Cylinders((ends[0] + ends[1]) / 2, directions, np.tile(cylinders.radii, len(middle)))
+    moved = Cylinders((ends[0] + ends[1]) / 2, directions, np.tile(cylinders.radii, len(middle)))
+    # moved ones have their points in the middle of what is compared
+    half = np.tile(np.diff(extents, axis=1)[:, 0] / 2, len(middle))
+    return joined([cylinders, moved]), np.concatenate([extents, np.stack([-half, half], axis=1)])
 
 
 def longest_base(views: Sequence[View], origin: Array) -> float:

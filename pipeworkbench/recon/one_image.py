@@ -8,7 +8,7 @@ either. What is found so is marked approximate.
 from __future__ import annotations
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.recon.adjust import AdjustSettings, CylinderSolution, adjust_cylinder
+from pipeworkbench.recon.adjust import HELD_RADIUS_SIGMA, AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.picks import PipePick
 from pipeworkbench.recon.plane_cylinders import cylinder_from_diameter
 from pipeworkbench.recon.tangent_planes import apparent_pipe
@@ -16,7 +16,6 @@ from pipeworkbench.recon.tangents import PipeTangents
 from pipeworkbench.recon.views import View
 from pipeworkbench.recon.weights import clicked_extents
 
-HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
 SETTINGS = AdjustSettings(ranges=(6.0, 4.0, 2.0))
 
 

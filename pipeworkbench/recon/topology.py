@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pipeworkbench.pipeline import AnyComponent, Flange, Joint, Pipe, Pipeline, Tee
-from pipeworkbench.recon.ends import Ends, each_end_once, ends_of, line_of
-from pipeworkbench.recon.vectors import across
+from pipeworkbench.recon.ends import Ends, each_end_once, ends_of, line_of, shared_course
 
 FACE = 0  # a flange's port at its sealing face
 
@@ -189,13 +188,9 @@ def _overlaps(pipes: Sequence[Pipe], settings: TopologySettings) -> list[str]:
     """Return a sentence for every two pipes of which one lies in the other."""
     found = []
     for one, other in itertools.combinations(pipes, 2):
-        start, axis = line_of(one)
-        offsets = np.array([other.start, other.end]) - start
-        along = offsets @ axis
-        aside = np.linalg.norm(across(offsets, axis), axis=1)
+        shared, aside = shared_course(one, other)
         radius = max(one.outer_diameter, other.outer_diameter) / 2
-        shared = min(one.length, along.max()) - max(0.0, along.min())
-        parallel = abs(along[1] - along[0]) >= np.cos(np.radians(settings.angle_deg)) * other.length
+        parallel = abs(line_of(one)[1] @ line_of(other)[1]) >= np.cos(np.radians(settings.angle_deg))
         if parallel and aside.mean() < radius and shared > settings.overlap * 2 * radius:
             found.append(f"{one.id} and {other.id}: they lie in each other over {shared:.0f} mm; delete one of them")
     return found

@@ -21,15 +21,6 @@ BY_ID = {component.id: component for component in EVERYTHING.components}
 MOVED = StationPose(frame_from_level=((0.0, -1.0, 0.0, 5000.0), (1.0, 0.0, 0.0, -200.0), (0.0, 0.0, 1.0, 80.0), (0.0, 0.0, 0.0, 1.0)))
 
 
-@pytest.fixture
-def document():
-    made = FreeCAD.newDocument("test")
-    made.UndoMode = 1
-    yield made
-    for name in FreeCAD.listDocuments():
-        FreeCAD.closeDocument(name)
-
-
 def reopened(document, path):
     document.recompute()
     document.saveAs(str(path))

@@ -23,15 +23,6 @@ def volume(outer, wall, length):
     return math.pi / 4 * (outer**2 - (outer - 2 * wall) ** 2) * length
 
 
-@pytest.fixture
-def document():
-    made = FreeCAD.newDocument("test")
-    made.UndoMode = 1
-    yield made
-    for name in FreeCAD.listDocuments():
-        FreeCAD.closeDocument(name)
-
-
 def test_pipe_is_hollow_and_lies_between_its_ends(document):
     obj = add_component(document, DN40)
     document.recompute()

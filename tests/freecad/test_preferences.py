@@ -28,14 +28,6 @@ def tables(tmp_path):
     use_folder(None)
 
 
-@pytest.fixture
-def document():
-    made = FreeCAD.newDocument("test")
-    yield made
-    for name in FreeCAD.listDocuments():
-        FreeCAD.closeDocument(name)
-
-
 def test_tables_of_the_preferred_folder_are_used_until_it_is_no_longer_named(tables):
     use_preferred_catalogue()
     assert pipe_size(50.5).dn == 41
