@@ -309,8 +309,9 @@ class StationPose:
 
 AnyComponent = Pipe | Elbow | Flange | Tee | Reducer | Cap
 _KINDS: dict[str, type[AnyComponent]] = {kind.kind: kind for kind in (Pipe, Elbow, Flange, Tee, Reducer, Cap)}
-_POINTS = ("start", "end", "intersection", "branch_end", "face")
-_DIRECTIONS = ("axis",)
+# fields of components that move with them
+POINTS = frozenset({"start", "end", "intersection", "branch_end", "face"})
+DIRECTIONS = frozenset({"axis"})
 _PIPELINE_KEYS = {"schema", "length_unit", "frame", "components", "joints", "stations", "sigma0"}
 _IDENTITY: Matrix = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
@@ -401,8 +402,8 @@ def moved(component: AnyComponent, b_from_a: Matrix) -> AnyComponent:
         return x, y, z
 
     names = {f.name for f in dataclasses.fields(component)}
-    changes: dict[str, Any] = {name: turned(getattr(component, name), 1) for name in _POINTS if name in names}
-    changes |= {name: turned(getattr(component, name), 0) for name in _DIRECTIONS if name in names}
+    changes: dict[str, Any] = {name: turned(getattr(component, name), 1) for name in POINTS & names}
+    changes |= {name: turned(getattr(component, name), 0) for name in DIRECTIONS & names}
     return dataclasses.replace(component, **changes)
 
 

@@ -1,281 +1,231 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Least-squares adjustment of a cylinder to the image edges of all views (the paper's Sect. 7.1).
+"""The common adjustment of pipelines to the edges of all images (the paper's Sect. 7), with conditions between components.
 
-Observations are the distances d_i from samples of the back-projected edges to the nearest subpixel
-edge points, matched anew in each iteration within a shrinking range. The derivatives follow Eqs. 5-13:
-an edge-generating point moves with the cylinder; only the part along the surface normal shows in the
-image across the contour. The diameter is free or a pseudo-observation.
+Observations are the image distances of contour samples to the nearest subpixel edges, matched anew in each iteration
+within a shrinking range; pseudo-observations hold standard sizes and make the pipeline continuous at its joints.
+Unknowns are the components' parameters and, where wanted, the poses of stations and cameras.
+Gauss and Newton's iteration with the damping of Levenberg and Marquardt; variances are estimated from the residuals, and
+the adjustment repeated with them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pipeworkbench.pipeline import Elbow
+from pipeworkbench.recon.adjustment.charts import DIRECTION, POSITION, bends
+from pipeworkbench.recon.adjustment.feasibility import contradictions
+from pipeworkbench.recon.adjustment.linearisation import Linearisation, Variances, linearised, sampled
+from pipeworkbench.recon.adjustment.normal_equations import covariance
+from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem, StationViews
+from pipeworkbench.recon.adjustment.report import Outcome, solution_of
+from pipeworkbench.recon.adjustment.sampling import Samples
+from pipeworkbench.recon.adjustment.slides import slid
+from pipeworkbench.recon.adjustment.solution import ContourFit, Estimate, Gross, Pose, PseudoFit, Solution, Weak
+from pipeworkbench.recon.adjustment.state import State
+from pipeworkbench.recon.adjustment.variances import assessed, estimated, gross_contours, near, wrongly_left_out
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.cylinder import Cylinder, contour, perpendicular_axes
-from pipeworkbench.recon.match import match
-from pipeworkbench.recon.views import View
 
-LEAST_SAMPLES, MOST_SAMPLES = 8, 1000  # along one edge in one view
+__all__ = [
+    "AdjustmentSettings",
+    "ContourFit",
+    "Estimate",
+    "Gross",
+    "Pose",
+    "Problem",
+    "PseudoFit",
+    "Solution",
+    "StationViews",
+    "Weak",
+    "adjust",
+]
+
+LEAST_DAMPING, FIRST_DAMPING = 1e-3, 0.3  # of the diagonal; less is none
+FASTER, SLOWER = 0.1, 10.0
+NO_GAIN = 0.01  # of the cost, in variances: what changes it by less moves nothing by a tenth of its standard deviation
+LARGEST_STEP = 60.0  # mm in one iteration
+UNDER_SIGMA = 0.02  # part of a standard deviation that is no movement
+RESAMPLED_PX = 0.5  # contours that moved by more are sampled anew
+THINNED = 3  # samples of which one is used on the way
+NEAR_PX = 10.0  # search ranges that come again when flanges have found their places
+CONVERGED = "converged: nothing moves by more than {:g} mm or a fiftieth of its standard deviation"
 NOT_CONVERGED = "the largest number of iterations was reached"
-NOT_MOVED = "not moved: no iterations were asked for"
-HELD_RADIUS_SIGMA = 1e-4  # mm; a pseudo-observation with a weight that no number of edges moves
-PARAMETERS = 5  # two shifts and two tilts across the axis, the radius
+STUCK = "converged: no step makes the fit better"
+NOTHING = "there is nothing to adjust"
+NO_BEND = "it is no bend, its axes are nearly in line; its joints do not count"
+REASON = "nothing that is observed determines its {}"
 
 
-@dataclass(frozen=True)
-class AdjustSettings:
-    """Tunables of the adjustment.
-
-    ``spacing`` is the distance between samples in px (neighbouring edge points share pixels: closer
-    samples would repeat the same noise), ``ranges`` the search ranges b in px iteration by iteration
-    (the last one stays), ``tukey`` the factor of Tukey's biweight in robust standard deviations,
-    ``least_scale`` a floor in px for that standard deviation, ``systematic`` the
-    standard deviation in px of what all samples of one edge in one image have in common (calibration,
-    shading of the limb), which no number of samples averages away, ``step`` the movement in mm below which
-    the iteration has converged; no ``iterations`` at all give the statistics of the starting values.
-    """
-
-    spacing: float = 4.0
-    ranges: tuple[float, ...] = (8.0, 6.0, 4.0, 3.0)
-    tukey: float = 4.7
-    least_scale: float = 0.05
-    systematic: float = 0.2
-    step: float = 1e-3
-    iterations: int = 30
-
-
-@dataclass(frozen=True, eq=False)
-class CylinderSolution:
-    """The adjusted cylinder and how well it is known.
-
-    covariance (5, 5): shifts (mm) and tilts (mm at ``half_length``) along ``axes`` (2, 3), radius (mm);
-    sigma0 in px; residuals, weights and views, one entry per observation; ``support`` is the part of
-    all samples in the images that found an edge; message says why it stopped.
-    """
-
-    cylinder: Cylinder
-    covariance: Array
-    axes: Array
-    half_length: float
-    sigma0: float
-    residuals: Array
-    redundancy: int
-    iterations: int
-    converged: bool
-    support: float
-    message: str
-
-    @property
-    def sigma_position(self) -> Array:
-        """Standard deviations (3,) of the axis' middle along the frame's axes, mm."""
-        shifts = self.covariance[:2, :2]
-        return np.asarray(np.sqrt(np.einsum("ai,ab,bi->i", self.axes, shifts, self.axes)))
-
-    @property
-    def sigma_direction(self) -> float:
-        """Standard deviation of the axis' direction in radians, the larger of both tilts."""
-        largest = float(np.linalg.eigvalsh(self.covariance[2:4, 2:4])[-1])
-        return float(np.sqrt(max(largest, 0.0))) / self.half_length
-
-    @property
-    def sigma_radius(self) -> float:
-        """Standard deviation of the radius in mm."""
-        return float(np.sqrt(max(self.covariance[4, 4], 0.0)))
-
-
-def adjust_cylinder(
-    views: Sequence[View],
-    cylinder: Cylinder,
-    extent: tuple[float, float],
-    radius_observation: tuple[float, float] | None = None,
-    settings: AdjustSettings | None = None,
-) -> CylinderSolution | None:
-    """Fit a cylinder to the edges of all views.
+def adjust(
+    problem: Problem,
+    settings: AdjustmentSettings | None = None,
+    progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
+) -> Solution:
+    """Adjust components, and stations that are free, to the edges of all images and to what is known of them.
 
     Parameters
     ----------
-    views : sequence of View
-    cylinder : Cylinder
-        Starting values.
-    extent : (float, float)
-        From where to where, along the axis from ``cylinder.point`` in mm, its edges are used.
-    radius_observation : (radius, sigma) in mm, optional
-        Pseudo-observation of the radius; None leaves it free.
-    settings : AdjustSettings, optional
+    problem : Problem
+    settings : AdjustmentSettings, optional
+    progress : callable
+        Called with what is being done, how many iterations are done and how many there may be.
 
     Returns
     -------
-    CylinderSolution or None
-        None where too few edges were found or the geometry does not determine the cylinder.
+    Solution
+        Also where something is not determined or conditions contradict each other: what that concerns is as it was.
     """
-    settings = settings or AdjustSettings()
-    middle = (extent[0] + extent[1]) / 2
-    half_length = max((extent[1] - extent[0]) / 2, 1.0)
-    current = Cylinder(cylinder.at(middle), cylinder.direction, cylinder.radius)
-    system: _System | None = None
-    if settings.iterations == 0:
-        system = _observe(views, current, half_length, settings.ranges[-1], radius_observation, settings)
-        return system.solution(current, 0, NOT_MOVED, settings) if system else None
-    for iteration in range(1, settings.iterations + 1):
-        reach = settings.ranges[min(iteration, len(settings.ranges)) - 1]
-        system = _observe(views, current, half_length, reach, radius_observation, settings)
-        step = None if system is None else system.solve()
-        if system is None or step is None or np.abs(step[:4]).max() > half_length + 50 * current.radius:
-            return None
-        current = system.moved(step)
-        if current.radius <= 0:
-            return None
-        if iteration >= len(settings.ranges) and np.abs(step).max() < settings.step:
-            return system.solution(current, iteration, f"converged: no movement above {settings.step:g} mm", settings)
-    return system.solution(current, settings.iterations, NOT_CONVERGED, settings) if system else None
+    settings = settings or AdjustmentSettings()
+    state = State.of(problem, settings)
+    against = contradictions(state, settings)
+    reasons = {one.id: NO_BEND for one in problem.components if isinstance(one, Elbow) and not bends(one)}
+    reasons |= {state.components[row].id: reason for row, reason in against.reasons.items()}
+    state = state.without(against.joints, {row: state.free[row] for row in against.reasons})
+    samples = sampled(state, settings)
+    state, more, far = _approached(state, samples, settings, progress)
+    reasons |= more
+    if settings.slide:
+        state = slid(state, settings)
+        samples = sampled(state, settings)
+        near_ranges = tuple(reach for reach in settings.ranges if reach <= NEAR_PX) or settings.ranges[-1:]
+        state, more, far = _approached(state, samples, replace(settings, ranges=near_ranges), progress)
+        reasons |= more
+    if far > RESAMPLED_PX:
+        # what is seen is another thing now, and the result is not to depend on where it began
+        samples = sampled(state, settings)
+    variances = Variances()
+    # what was determined by edges further away may no longer be
+    first, more = _determined(linearised(state, samples, settings.ranges[-1], variances, settings), settings)
+    reasons |= more
+    run = _settled(first, samples, variances, settings, len(settings.ranges), settings.settling, progress)
+    for _ in range(settings.variance_rounds):
+        better = estimated(run.last, variances, settings)
+        weighted = run.last.weighted(better, settings)
+        gross = gross_contours(weighted, assessed(weighted, better, settings), settings)
+        if near(better, variances) and variances.factor is not None and not gross.any():
+            break
+        left_out = gross if variances.left_out is None else gross | variances.left_out
+        variances = replace(better, left_out=left_out)
+        again = linearised(run.last.state, samples, settings.ranges[-1], variances, settings)
+        run = _settled(again, samples, variances, settings, run.iterations, 0, progress)
+    assessment = assessed(run.last, variances, settings)
+    back = wrongly_left_out(assessment, variances, settings)
+    if back.any() and variances.left_out is not None:
+        # once, so that none goes out and in for ever
+        variances = replace(variances, left_out=variances.left_out & ~back)
+        again = linearised(run.last.state, samples, settings.ranges[-1], variances, settings)
+        run = _settled(again, samples, variances, settings, run.iterations, 0, progress)
+        assessment = assessed(run.last, variances, settings)
+    return solution_of(Outcome(problem, run.last, assessment, variances, samples, reasons, run.iterations, run.converged, run.message), settings)
 
 
 @dataclass(frozen=True, eq=False)
-class _System:
-    """One linearisation: design matrix (n, 5), misclosures, prior sigmas and robust weights (n,).
+class _Run:
+    """Where an iteration ended and why."""
 
-    ``edge`` numbers the edge in an image that an observation belongs to; the last ``pseudo`` rows are
-    pseudo-observations and belong to none.
+    last: Linearisation
+    iterations: int
+    converged: bool
+    message: str
+
+
+def _approached(
+    state: State, samples: Sequence[Samples], settings: AdjustmentSettings, progress: Callable[[str, int, int], None]
+) -> tuple[State, dict[str, str], float]:
+    """Return the state after one step with each search range, from fewer samples, what is not determined, which stays, and how far it went in px.
+
+    Edges are matched anew each time. How far the last step goes is not looked at: it is a small one where there is more than one.
     """
-
-    cylinder: Cylinder
-    axes: Array
-    half_length: float
-    design: Array
-    misclosure: Array
-    prior_sigma: Array
-    robust: Array
-    edge: NDArray[np.int_]
-    pseudo: int
-    support: float
-
-    def _weights(self) -> Array:
-        return self.robust / self.prior_sigma**2
-
-    def _normal_matrix(self) -> Array:
-        return self.design.T @ (self.design * self._weights()[:, None])
-
-    def solve(self) -> Array | None:
-        try:
-            step = np.linalg.solve(self._normal_matrix(), self.design.T @ (self._weights() * self.misclosure))
-        except np.linalg.LinAlgError:
-            return None
-        return step if np.isfinite(step).all() else None
-
-    def moved(self, step: Array) -> Cylinder:
-        direction = self.cylinder.direction + (step[2:4] / self.half_length) @ self.axes
-        point = self.cylinder.point + step[:2] @ self.axes
-        return Cylinder(point, direction / np.linalg.norm(direction), self.cylinder.radius + float(step[4]))
-
-    def solution(self, cylinder: Cylinder, iterations: int, message: str, settings: AdjustSettings) -> CylinderSolution | None:
-        image = slice(None, len(self.misclosure) - self.pseudo)
-        residuals, weights = self.misclosure[image], self._weights()[image]
-        effective = float(self.robust[image].sum())
-        redundancy = round(effective) + self.pseudo - PARAMETERS
-        if redundancy <= 0:
-            return None
-        sigma0_unit = float(np.sqrt(np.sum(weights * residuals**2) / redundancy))
-        try:
-            cofactors = np.linalg.inv(self._normal_matrix())
-        except np.linalg.LinAlgError:
-            return None
-        # each edge's common error enters the parameters with the sum of its samples' influence
-        influence = (self.design[image] * weights[:, None]).T @ (self.edge[:, None] == np.unique(self.edge))
-        common = settings.systematic * cofactors @ influence
-        covariance = cofactors * max(sigma0_unit**2, 1.0) + common @ common.T
-        sigma0 = float(np.sqrt(np.sum(self.robust[image] * residuals**2) / redundancy))
-        return CylinderSolution(
-            cylinder,
-            covariance,
-            self.axes,
-            self.half_length,
-            sigma0,
-            residuals,
-            redundancy,
-            iterations,
-            message not in (NOT_CONVERGED, NOT_MOVED),
-            self.support,
-            message,
-        )
+    few = [one.thinned(THINNED) for one in samples]
+    begin: Linearisation | None = None
+    far = 0.0
+    reasons: dict[str, str] = {}
+    for number, reach in enumerate(settings.ranges):
+        progress("adjusting", number, settings.iterations)
+        linear = linearised(state, few, reach, Variances(), settings)
+        if number == 0:
+            linear, reasons = _determined(linear, settings)
+        begin = begin or linear
+        far = max(far, _moved(begin, linear))
+        state = linear.state.moved(linear.unknowns, _limited(linear.equations.solve()))
+    return state, reasons, far
 
 
-def _observe(
-    views: Sequence[View],
-    cylinder: Cylinder,
-    half_length: float,
-    reach: float,
-    radius_observation: tuple[float, float] | None,
-    settings: AdjustSettings,
-) -> _System | None:
-    """Match the contours in all views and linearise."""
-    axes = np.array(perpendicular_axes(cylinder.direction))
-    designs, misclosures, sigmas, robusts, edges = [], [], [], [], []
-    samples = 0
-    for number, view in enumerate(views):
-        along = _sample_positions(view, cylinder, half_length, settings.spacing)
-        if along is None:
-            continue
-        seen = contour(view.camera, cylinder, along)
-        position, normal = seen.position.reshape(-1, 2), seen.normal.reshape(-1, 2)
-        samples += int(np.isfinite(position[:, 0]).sum())
-        matched = match(view.edges, position, normal, reach)
-        found = matched.found
-        if not found.any():
-            continue
-        gain = seen.gain.reshape(-1)[found, None]
-        outward = np.repeat(seen.outward[0], len(along), axis=0)[found]
-        lever = np.tile(along, 2)[found, None] / half_length
-        across = outward @ axes.T
-        designs.append(gain * np.hstack([across, lever * across, np.ones((len(across), 1))]))
-        edges.append(2 * number + np.repeat([0, 1], len(along))[found])
-        distance = matched.distance[found]
-        misclosures.append(distance)
-        sigmas.append(view.edges.sigma[matched.edge[found]])
-        robusts.append(_tukey(distance, settings, coarse=reach > settings.ranges[-1]))
-    if not designs or sum(map(len, designs)) < 3 * PARAMETERS:
-        return None
-    count = sum(map(len, designs))
-    pseudo = 0
-    if radius_observation is not None:
-        pseudo = 1
-        designs.append(np.array([[0.0, 0, 0, 0, 1]]))
-        misclosures.append(np.array([radius_observation[0] - cylinder.radius]))
-        sigmas.append(np.array([radius_observation[1]]))
-        robusts.append(np.ones(1))
-    return _System(
-        cylinder,
-        axes,
-        half_length,
-        np.vstack(designs),
-        np.concatenate(misclosures),
-        np.concatenate(sigmas),
-        np.concatenate(robusts),
-        np.concatenate(edges),
-        pseudo,
-        count / samples,
-    )
+def _settled(
+    linear: Linearisation,
+    samples: Sequence[Samples],
+    variances: Variances,
+    settings: AdjustmentSettings,
+    done: int,
+    settling: int,
+    progress: Callable[[str, int, int], None],
+) -> _Run:
+    """Iterate until nothing moves.
+
+    Edges are matched anew ``settling`` times, then they stay, so that the sum of squares is a smooth function, and a step that makes it
+    larger is taken back and damped.
+    """
+    reach = linear.reach
+    if not linear.unknowns.total:
+        return _Run(linear, done, converged=True, message=NOTHING)
+    kept = linear
+    for number in range(settling):
+        progress("adjusting", done + number, done + settings.iterations)
+        state = kept.state.moved(kept.unknowns, _limited(kept.equations.solve()))
+        kept = linearised(state, samples, reach, variances, settings)
+    done += settling
+    damping = 0.0
+    for iteration in range(settings.iterations):
+        progress("adjusting", done + iteration, done + settings.iterations)
+        step = _limited(kept.equations.solve(damping))
+        least = np.maximum(settings.step, UNDER_SIGMA / np.sqrt(kept.equations.matrix.diagonal()))
+        still = bool((np.abs(step) < least).all())
+        if still and damping <= LEAST_DAMPING:
+            return _Run(kept, done + iteration + 1, converged=True, message=CONVERGED.format(settings.step))
+        linear = linearised(kept.state.moved(kept.unknowns, step), samples, reach, variances, settings, kept.samples)
+        gain = kept.cost - linear.cost
+        if gain > -NO_GAIN:
+            kept, damping = linear, damping * FASTER if damping > LEAST_DAMPING else 0.0
+        else:
+            damping = max(damping * SLOWER, FIRST_DAMPING)
+        if still or (damping > LEAST_DAMPING and abs(gain) < NO_GAIN):
+            return _Run(kept, done + iteration + 1, converged=True, message=STUCK)
+    return _Run(kept, done + settings.iterations, converged=False, message=NOT_CONVERGED)
 
 
-def _sample_positions(view: View, cylinder: Cylinder, half_length: float, spacing: float) -> Array | None:
-    """Return positions along the axis (n,) that are about ``spacing`` pixels apart in this view."""
-    rays = np.array([cylinder.at(-half_length), cylinder.at(half_length)]) - view.camera.projection_centre
-    if (rays @ view.camera.rotation[2]).min() <= cylinder.radius:
-        return None
-    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-    angle = float(np.arccos(np.clip(rays[0] @ rays[1], -1, 1)))
-    count = int(np.clip(angle * view.camera.interior.pixels_per_radian / spacing, LEAST_SAMPLES, MOST_SAMPLES))
-    return np.linspace(-half_length, half_length, count)
+def _moved(one: Linearisation, other: Linearisation) -> float:
+    """Return by how much (px) contours moved across themselves between two linearisations of the same samples."""
+    parts = zip(one.samples, other.samples, strict=True)
+    across = [np.abs(np.einsum("ni,ni->n", there.position - here.position, here.normal)) for here, there in parts]
+    return max((float(np.nanmax(some, initial=0.0)) for some in across), default=0.0)
 
 
-def _tukey(distance: Array, settings: AdjustSettings, *, coarse: bool) -> Array:
-    """Return Tukey's biweight with a scale from the data; wide while the search is still coarse."""
-    scale = max(1.4826 * float(np.median(np.abs(distance))), settings.least_scale)
-    limit = settings.tukey * scale
-    if coarse:
-        limit = max(limit, settings.ranges[-1])
-    return np.asarray(np.clip(1 - (distance / limit) ** 2, 0, None) ** 2)
+def _limited(step: Array) -> Array:
+    """Return a step (u,) that moves nothing too far; what is not a number moves nothing."""
+    largest = float(np.abs(step).max(initial=0.0))
+    if not np.isfinite(largest):
+        return np.zeros_like(step)
+    return step * (LARGEST_STEP / max(largest, LARGEST_STEP))
+
+
+def _determined(linear: Linearisation, settings: AdjustmentSettings) -> tuple[Linearisation, dict[str, str]]:
+    """Return the linearisation in which only what is observed may move, and for each component's id what is not."""
+    reasons: dict[str, str] = {}
+    # what is held in one round may have been what held others
+    for _ in range(len(linear.state.components) + 1):
+        cofactors = covariance(linear.equations)
+        held: dict[int, frozenset[str]] = {}
+        for row, component in enumerate(linear.state.components):
+            variance = np.diag(cofactors.of(linear.unknowns.columns(row)))
+            loose = {name for name, value in zip(linear.unknowns.names[row], variance, strict=True) if not value < settings.undetermined**2}
+            if not loose:
+                continue
+            held[row] = linear.state.free[row] if loose & {POSITION, DIRECTION} else frozenset(loose)
+            reasons[component.id] = REASON.format(" and ".join(name.replace("_", " ") for name in sorted(loose)))
+        if not held:
+            break
+        linear = linear.at(linear.state.without(frozenset(), held), settings)
+    return linear, reasons

@@ -120,6 +120,11 @@ class Camera:
         turned = Rotation.from_rotvec(delta[3:]).as_matrix() @ self.rotation
         return replace(self, rotation=turned, projection_centre=self.projection_centre + delta[:3])
 
+    def placed(self, b_from_a: Array) -> Camera:
+        """Return the camera of frame a in frame b, for the 4 x 4 motion from a to b."""
+        turn, shift = b_from_a[:3, :3], b_from_a[:3, 3]
+        return replace(self, rotation=self.rotation @ turn.T, projection_centre=turn @ self.projection_centre + shift)
+
     def sees(self, pixels: Array, margin: float = 0.0) -> NDArray[np.bool_]:
         """Return which pixels (n, 2) lie in the image, at least ``margin`` pixels from its border."""
         u, v = pixels[..., 0], pixels[..., 1]

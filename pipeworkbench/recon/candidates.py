@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pipeworkbench.catalogue import PipeSize, nearest_pipe_size
-from pipeworkbench.recon.adjust import CylinderSolution
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.cylinder_adjustment import CylinderSolution
 from pipeworkbench.recon.vectors import across
 
 STANDARD_SIGMAS = 3.0  # a free diameter that is no further off a standard's may be it

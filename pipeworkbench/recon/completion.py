@@ -9,9 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from pipeworkbench.catalogue import pipe_size
-from pipeworkbench.recon.adjust import HELD_RADIUS_SIGMA, AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.candidates import PipeCandidate
 from pipeworkbench.recon.cylinder import Cylinder, joined
+from pipeworkbench.recon.cylinder_adjustment import HELD_RADIUS_SIGMA, AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.extent import extent_of
 from pipeworkbench.recon.match import quality
 from pipeworkbench.recon.moves import LEAST_GAIN, best_moved, lead_over_neighbours

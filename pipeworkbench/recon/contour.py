@@ -27,12 +27,15 @@ from pipeworkbench.pipeline import AnyComponent
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.cylinder import perpendicular_axes
 from pipeworkbench.recon.shapes import Shapes, shapes_of
-from pipeworkbench.recon.visibility import hidden, hidden_in_alternatives
+from pipeworkbench.recon.visibility import hidden
 
 INTERVAL_PX = 3.0  # the paper's s
 TOUCHING_MM = 10.0  # another component hides a sample only where it is nearer by more than this
 COARSE = 129  # points per curve with which its length in the image is measured
 LINE, TORUS, CIRCLE = 0, 1, 2  # kinds of curves
+# what circles begin beside: no component's axis but by chance, so that where they begin changes little when they turn a little
+OBLIQUE = np.array([0.48, 0.64, 0.6])
+PARALLEL = 1e-3  # sine of the angle to it below which there is no such direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,7 @@ class Contour:
         Row of the component that a sample belongs to.
     curve : (n,) array
         Number of the curve; a curve's samples follow each other. ``names[curve]`` says what it is: "pipe",
-        "elbow", "rim", "neck" (outlines), "face", "back", "hub end" (circles), "raised face" (both).
+        "branch", "cone", "cap", "elbow", "rim", "neck" (outlines), "face", "back", "hub end" (circles), "raised face" (both).
     parameter : (n,) array
         0 to 1 along the curve: from a component's start to its end, from a flange's face to its back, or around.
     position, tangent, normal : (n, 2) arrays
@@ -117,39 +120,49 @@ def contour_of(
     InputError
         Where a component has no such geometry.
     """
-    shapes = shapes_of(components)
-    curves = _curves_of(shapes, camera.projection_centre)
+    return contour_of_shapes(camera, shapes_of(components), interval, touching, alternatives, coarse)
+
+
+def contour_of_shapes(
+    camera: Camera,
+    shapes: Shapes,
+    interval: float = INTERVAL_PX,
+    touching: float = TOUCHING_MM,
+    alternatives: Sequence[int] | None = None,
+    coarse: int = COARSE,
+    *,
+    steady: bool = False,
+) -> Contour:
+    """Do what :func:`contour_of` does for the surfaces of components; ``steady`` as in :func:`curves_of`."""
+    curves = curves_of(shapes, camera.projection_centre, steady=steady)
     curve, parameter = _spaced(camera, curves, interval, coarse)
-    point, outward = curves.at(curve, parameter)
-    position, derivative = camera.project_with_derivative(point)
+    seen = curves.seen_by(camera, curve, parameter)
     # a curve's first and last sample may lie a little outside
-    inside = camera.sees(position)
+    inside = camera.sees(seen.position)
     curve, parameter = curve[inside], parameter[inside]
-    point, outward, position, derivative = (x[inside] for x in (point, outward, position, derivative))
-    normal, gain = image_normal(derivative, outward)
+    seen = CurveSamples(*(getattr(seen, f.name)[inside] for f in fields(seen)))
     owner = curves.owner[curve]
-    if alternatives is None:
-        by_itself, by_others = hidden(camera.projection_centre, point, shapes, owner, touching)
-    else:
-        by_itself, by_others = hidden_in_alternatives(camera.projection_centre, point, shapes, owner, touching, np.asarray(alternatives, np.intp))
+    number = None if alternatives is None else np.asarray(alternatives, np.intp)
+    by_itself, by_others = hidden(camera.projection_centre, seen.point, shapes, owner, touching, number)
+    tangent = np.column_stack([-seen.normal[:, 1], seen.normal[:, 0]])
     return Contour(
-        owner,
-        curve,
-        parameter,
-        position,
-        np.column_stack([-normal[:, 1], normal[:, 0]]),
-        normal,
-        point,
-        outward,
-        gain,
-        by_itself,
-        by_others,
-        curves.names,
+        owner, curve, parameter, seen.position, tangent, seen.normal, seen.point, seen.outward, seen.gain, by_itself, by_others, curves.names
     )
 
 
 @dataclass(frozen=True, eq=False)
-class _Curves:
+class CurveSamples:
+    """Samples of curves as one camera sees them, in arrays of one length m: what :class:`Contour` says of them."""
+
+    position: Array
+    normal: Array
+    point: Array
+    outward: Array
+    gain: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
     """Curves of all kinds, c in number; what a kind has no use for is zero.
 
     kind, owner (c,); origin, axis, first, second (c, 3): a point and a frame; radius, tube (c,): radii of a
@@ -181,6 +194,13 @@ class _Curves:
                 points[rows], outward[rows] = evaluate(curve[rows], value[rows, None])
         return points, outward
 
+    def seen_by(self, camera: Camera, curve: NDArray[np.intp], parameter: Array) -> CurveSamples:
+        """Return what the camera at ``centre`` sees of curves (m,) at parameters (m,) from 0 to 1."""
+        point, outward = self.at(curve, parameter)
+        position, derivative = camera.project_with_derivative(point)
+        normal, gain = image_normal(derivative, outward)
+        return CurveSamples(position, normal, point, outward, gain)
+
     def _line(self, c: NDArray[np.intp], along: Array) -> tuple[Array, Array]:
         return self.origin[c] + along * self.axis[c], self.first[c]
 
@@ -204,8 +224,12 @@ class _Curves:
         return point, outward * np.where(np.einsum("mi,mi->m", outward, radial) < 0, -1.0, 1.0)[:, None]
 
 
-def _curves_of(shapes: Shapes, centre: Array) -> _Curves:
-    """Return the contour and edge curves of surfaces for a projection centre (3,)."""
+def curves_of(shapes: Shapes, centre: Array, *, steady: bool = False) -> Curves:
+    """Return the contour and edge curves of surfaces for a projection centre (3,).
+
+    Where a circle begins leaps when its axis passes from one coordinate plane's side to another's; ``steady`` circles begin where
+    they did a moment ago, for who follows samples while components move.
+    """
     frustums, tori, edges = shapes.frustums, shapes.tori, shapes.edges
     first, second = perpendicular_axes(frustums.axis)
     to_camera = centre - frustums.start
@@ -221,7 +245,7 @@ def _curves_of(shapes: Shapes, centre: Array) -> _Curves:
             direction = frustums.axis + slope[:, None] * radial
             lines.append((frustums.start + frustums.radius[:, :1] * radial, direction, normal))
     origin, direction, normal = (np.concatenate(x) for x in zip(*lines, strict=True))
-    edge_first, edge_second = perpendicular_axes(edges.axis)
+    edge_first, edge_second = _beside(edges.axis) if steady else perpendicular_axes(edges.axis)
     count = np.array([2 * len(frustums), 2 * len(tori), len(edges)])
 
     def stacked(line: Array | float, torus: Array | float, circle: Array | float) -> Array:
@@ -231,7 +255,7 @@ def _curves_of(shapes: Shapes, centre: Array) -> _Curves:
     def twice(values: NDArray[Any]) -> NDArray[Any]:
         return np.concatenate([values, values])
 
-    curves = _Curves(
+    curves = Curves(
         kind=np.repeat([LINE, TORUS, CIRCLE], count),
         owner=np.concatenate([twice(frustums.owner), twice(tori.owner), edges.owner]),
         origin=stacked(origin, twice(tori.centre), edges.centre),
@@ -249,10 +273,19 @@ def _curves_of(shapes: Shapes, centre: Array) -> _Curves:
     # a component's curves follow each other
     order = np.argsort(curves.owner, kind="stable")
     sorted_fields = {f.name: getattr(curves, f.name)[order] for f in fields(curves) if f.name not in ("centre", "names")}
-    return _Curves(**sorted_fields, centre=centre, names=tuple(curves.names[i] for i in order))
+    return Curves(**sorted_fields, centre=centre, names=tuple(curves.names[i] for i in order))
 
 
-def _spaced(camera: Camera, curves: _Curves, interval: float, coarse: int) -> tuple[NDArray[np.intp], Array]:
+def _beside(axes: Array) -> tuple[Array, Array]:
+    """Return unit vectors (k, 3) that make right-handed frames with axes (k, 3) and, unlike `perpendicular_axes`, turn steadily with them."""
+    first = np.cross(axes, OBLIQUE)
+    sine = np.linalg.norm(first, axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        first = np.where(sine > PARALLEL, first / sine, perpendicular_axes(axes)[0])
+    return first, np.cross(axes, first)
+
+
+def _spaced(camera: Camera, curves: Curves, interval: float, coarse: int) -> tuple[NDArray[np.intp], Array]:
     """Return curve numbers and parameters (n,) of samples that lie ``interval`` pixels apart in the image."""
     count = len(curves.owner)
     if not count:

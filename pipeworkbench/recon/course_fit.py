@@ -3,8 +3,8 @@
 
 The adjustment is the paper's Sect. 7.3 in its second form: the full set of parameters with pseudo-observations
 that keep the straight pieces on the axes of their pipes, as well as these are known. A held radius makes
-it the fit of a standard bend, with every parameter but the radius held it is the first form. The weighing
-is the likelihood ratio of evidence.py, which unlike Eq. 4 alone knows how dense edges are by chance.
+it the fit of a standard bend. The weighing is the likelihood ratio of evidence.py, which unlike Eq. 4 alone knows how
+dense edges are by chance.
 """
 
 from __future__ import annotations
@@ -89,7 +89,6 @@ def fitted(
     obstacles: Obstacles = (),
     *,
     free_radius: bool = False,
-    held_axes: bool = False,
 ) -> tuple[Courses, Array, list[NDArray[np.bool_]]]:
     """Draw courses onto the edges.
 
@@ -103,8 +102,6 @@ def fitted(
         As for :func:`.courses.hidden_samples`.
     free_radius : bool
         Whether the bend radius is free or held.
-    held_axes : bool
-        Hold the axes: with a free radius, Sect. 7.3's first form, in which the intersection point is kept.
 
     Returns
     -------
@@ -116,7 +113,6 @@ def fitted(
     """
     held = np.zeros(PARAMETERS, bool)
     held[RADIUS] = not free_radius
-    held[:RADIUS] = held_axes
     cofactor = np.full(len(courses), np.nan)
     # what stands before a course hardly changes while it moves
     hidden = [hidden_samples(view, courses, courses.spread(settings.samples), obstacles) for view in views]

@@ -131,7 +131,7 @@ def coarse_directions(along_u: Array, along_v: Array) -> NDArray[np.uint8]:
 
     Differences in this type wrap around as the directions do.
     """
-    steps = np.rint(np.arctan2(along_v, along_u) * (DIRECTIONS / np.pi)).astype(np.int32)
+    steps = np.rint(np.nan_to_num(np.arctan2(along_v, along_u)) * (DIRECTIONS / np.pi)).astype(np.int32)
     return (2 * steps).astype(np.uint8)
 
 

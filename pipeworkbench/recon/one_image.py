@@ -8,7 +8,7 @@ either. What is found so is marked approximate.
 from __future__ import annotations
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.recon.adjust import HELD_RADIUS_SIGMA, AdjustSettings, CylinderSolution, adjust_cylinder
+from pipeworkbench.recon.cylinder_adjustment import HELD_RADIUS_SIGMA, AdjustSettings, CylinderSolution, adjust_cylinder
 from pipeworkbench.recon.picks import PipePick
 from pipeworkbench.recon.plane_cylinders import cylinder_from_diameter
 from pipeworkbench.recon.tangent_planes import apparent_pipe

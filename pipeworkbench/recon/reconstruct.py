@@ -9,8 +9,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pipeworkbench.pipeline import AnyComponent, Pipe, Pipeline
-from pipeworkbench.recon.assemble import complete
+from pipeworkbench.pipeline import Pipe, Pipeline
+from pipeworkbench.recon.accuracy import level_of_accuracy
+from pipeworkbench.recon.adjust import AdjustmentSettings, Problem, Solution, StationViews, adjust
+from pipeworkbench.recon.assemble import Completed, complete
 from pipeworkbench.recon.candidates import PipeCandidate
 from pipeworkbench.recon.flanges import detect as detect_flanges
 from pipeworkbench.recon.flanges import of_picks as flanges_of_picks
@@ -21,10 +23,8 @@ from pipeworkbench.recon.station import Station
 from pipeworkbench.recon.vectors import as_vector, rounded
 from pipeworkbench.recon.views import View, views_of
 
-# Level of Accuracy of the U.S. Institute of Building Documentation: upper limits in mm at 95 %
-LEVELS_OF_ACCURACY = ((1.0, "LOA50"), (5.0, "LOA40"), (15.0, "LOA30"), (50.0, "LOA20"))
+ADJUSTED = AdjustmentSettings()
 WORKERS = 2  # picks at a time; more wait for each other's interpreter lock
-COVERAGE_FACTOR = 2.0  # standard deviations in a 95 % interval
 
 
 @dataclass(frozen=True)
@@ -32,13 +32,16 @@ class Reconstruction:
     """What came out of a station.
 
     ``failed_picks`` gave nothing, each with its reason; ``alternatives`` holds for each pick's index what it could mean
-    too, best first; ``warnings`` say what does not fit in the pipeline, in sentences.
+    too, best first; ``warnings`` say what does not fit in the pipeline, in sentences; ``adjustment`` is the common adjustment's solution,
+    None where there was none; ``views`` are the station's, for what comes after.
     """
 
     pipeline: Pipeline
     failed_picks: tuple[FailedPick, ...]
     alternatives: dict[int, tuple[Alternative, ...]] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    adjustment: Solution | None = None
+    views: tuple[View, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +59,8 @@ def reconstruct(
     settings: PickSettings | None = None,
     progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
     alternatives: int = 1,
+    *,
+    adjustment: AdjustmentSettings | None = ADJUSTED,
 ) -> Reconstruction:
     """Reconstruct the pipes and flanges that were picked in a station.
 
@@ -68,13 +73,15 @@ def reconstruct(
         How many ranked answers are wanted for each pick at most.
     progress : callable
         Called with what is being done, how many steps are done and how many there are.
+    adjustment : AdjustmentSettings, optional
+        Of the common adjustment; None leaves every component as it was found.
 
     Raises
     ------
     InputError
         Where an image does not fit the station.
     """
-    steps = len(picks.pipes) + 2
+    steps = len(picks.pipes) + 3
     progress("finding edges", 0, steps)
     views = views_of(station)
     pipes: list[Pipe] = []
@@ -97,12 +104,14 @@ def reconstruct(
             # the user cancelled or a step failed: do not wait for picks that nobody wants
             pool.shutdown(wait=True, cancel_futures=True)
             raise
-    progress("flanges and elbows", steps - 1, steps)
+    progress("flanges and elbows", steps - 2, steps)
     flanges = flanges_of_picks(views, picks.flanges, pipes, station.name)
     failed += [FailedPick(*failure) for failure in flanges.failures]
-    pipeline, warnings = _completed(views, (*pipes, *flanges.flanges), station)
+    found = complete(views, (*pipes, *flanges.flanges), station=station.name)
+    progress("adjusting", steps - 1, steps)
+    pipeline, warnings, solution = _adjusted(views, found, station, adjustment)
     progress("done", steps, steps)
-    return Reconstruction(pipeline, tuple(sorted(failed)), ranked, warnings)
+    return Reconstruction(pipeline, tuple(sorted(failed)), ranked, warnings, solution, views)
 
 
 def _alternatives(answer: PickAnswer, pick: PipePick, station: str, most: int) -> tuple[Alternative, ...]:
@@ -118,6 +127,7 @@ def reconstruct_without_picks(
     progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
     *,
     flanges: bool = False,
+    adjustment: AdjustmentSettings | None = ADJUSTED,
 ) -> Reconstruction:
     """Reconstruct the pipes of a station without picks, and what joins them.
 
@@ -130,6 +140,8 @@ def reconstruct_without_picks(
         Called with what is being done, how many steps are done and how many there are.
     flanges : bool
         Look for flanges along the pipes, too; that takes seconds.
+    adjustment : AdjustmentSettings, optional
+        Of the common adjustment; None leaves every component as it was found.
 
     Raises
     ------
@@ -148,23 +160,33 @@ def reconstruct_without_picks(
     def report(text: str) -> None:
         nonlocal done
         done += 1
-        progress(text, done, STEPS + 2)
+        progress(text, done, STEPS + 3)
 
-    progress("finding edges", 0, STEPS + 2)
+    progress("finding edges", 0, STEPS + 3)
     views = views_of(station)
     candidates = detect(views, limits, settings, report)
     pipes = tuple(as_component(candidate, None, station.name, number) for number, candidate in enumerate(candidates))
-    progress("flanges and elbows", STEPS + 1, STEPS + 2)
-    found = detect_flanges(views, pipes, station.name) if flanges else ()
-    pipeline, warnings = _completed(views, (*pipes, *found), station)
-    progress("done", STEPS + 2, STEPS + 2)
-    return Reconstruction(pipeline, (), {}, warnings)
+    progress("flanges and elbows", STEPS + 1, STEPS + 3)
+    also = detect_flanges(views, pipes, station.name) if flanges else ()
+    found = complete(views, (*pipes, *also), station=station.name)
+    progress("adjusting", STEPS + 2, STEPS + 3)
+    pipeline, warnings, solution = _adjusted(views, found, station, adjustment)
+    progress("done", STEPS + 3, STEPS + 3)
+    return Reconstruction(pipeline, (), {}, warnings, solution, views)
 
 
-def _completed(views: Sequence[View], components: Sequence[AnyComponent], station: Station) -> tuple[Pipeline, tuple[str, ...]]:
-    """Return the pipeline of pipes and flanges with what lies between them, and what does not fit."""
-    found = complete(views, components, station=station.name)
-    return replace(Pipeline.of_station(station.name, found.components), joints=found.joints), found.warnings
+def _adjusted(
+    views: Sequence[View], found: Completed, station: Station, settings: AdjustmentSettings | None
+) -> tuple[Pipeline, tuple[str, ...], Solution | None]:
+    """Return the pipeline after the common adjustment, what does not fit, and the adjustment's solution."""
+    pipeline = replace(Pipeline.of_station(station.name, found.components), joints=found.joints)
+    if settings is None or not found.components:
+        return pipeline, found.warnings, None
+    placed = frozenset(component.id for component in found.components if isinstance(component, Pipe))
+    solution = adjust(Problem(found.components, (StationViews(station.name, views),), found.joints, placed=placed), settings)
+    pipeline = replace(pipeline, components=solution.components, sigma0=round(solution.sigma0, 4) if np.isfinite(solution.sigma0) else None)
+    weak = (f"{one.component}: {one.reason}" for one in solution.weak)
+    return pipeline, (*found.warnings, *solution.warnings, *weak), solution
 
 
 def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, number: int = 0) -> Pipe:
@@ -194,8 +216,3 @@ def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, 
         gaps=gaps or None,
         nearest_standard=nearest.designation if nearest else None,
     )
-
-
-def level_of_accuracy(sigma: float) -> str:
-    """Return the USIBD level of accuracy of a position with this standard deviation in mm."""
-    return next((name for limit, name in LEVELS_OF_ACCURACY if COVERAGE_FACTOR * sigma <= limit), "LOA10")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Many hypotheses drawn onto the nearest edges at once: a few robust Gauss-Newton steps, batched.
 
-The same observation equations as in adjust.py, but without statistics: this only decides which
+The same observation equations as in cylinder_adjustment.py, but without statistics: this only decides which
 hypotheses are worth a full adjustment, and one array operation for all of them is what makes it fast.
 """
 

@@ -89,8 +89,8 @@ S = TypeVar("S", Frustums, Tori, Circles)
 class Shapes:
     """The surfaces of components.
 
-    ``frustums`` and ``tori`` with the ``part`` names of the former ("pipe", "rim", "neck", "raised face"); ``discs`` close them;
-    ``edges`` are the sharp edges that a camera may see, with their ``edge_part`` ("face", "back", "raised face", "hub end").
+    ``frustums`` and ``tori`` with the ``part`` names of the former ("pipe", "branch", "cone", "cap", "rim", "neck", "raised face"); ``discs`` close
+    them; ``edges`` are the sharp edges that a camera may see, with their ``edge_part`` ("face", "back", "raised face", "hub end").
     """
 
     frustums: Frustums
@@ -139,7 +139,7 @@ def shapes_of(components: Sequence[AnyComponent]) -> Shapes:
                 rows.add_flange(owner, component)
             case Tee():
                 rows.add_frustum(owner, "pipe", component.start, component.end, component.outer_diameter, component.outer_diameter)
-                rows.add_frustum(owner, "pipe", component.intersection, component.branch_end, component.branch_diameter, component.branch_diameter)
+                rows.add_frustum(owner, "branch", component.intersection, component.branch_end, component.branch_diameter, component.branch_diameter)
             case Reducer():
                 rows.add_frustum(owner, "cone", component.start, component.end, component.outer_diameter, component.end_diameter)
             case Cap():

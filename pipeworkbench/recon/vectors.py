@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from pipeworkbench.recon.camera import Array
 
 def as_vector(array: Array) -> Vector:
     """Return an array (3,) as components hold it."""
-    x, y, z = (float(value) for value in array)
+    x, y, z = array.tolist()
     return x, y, z
 
 
@@ -26,7 +27,25 @@ def rounded(array: Array, digits: int) -> Vector:
 def unit(vector: Any) -> Array:
     """Return the unit vector of the same direction (n,)."""
     array = np.asarray(vector, float)
-    return array / np.linalg.norm(array)
+    return array / math.sqrt(array @ array)
+
+
+def cross(one: Array, other: Array) -> Array:
+    """Return the cross product of two vectors (3,): NumPy's is made for many at a time."""
+    a, b, c = one.tolist()
+    x, y, z = other.tolist()
+    return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
+
+
+def axes_across(direction: Array) -> tuple[Array, Array]:
+    """Return two unit vectors (3,) that form a right-handed frame with a unit direction (3,)."""
+    x, y, z = direction.tolist()
+    # the unit vector that is the furthest from it
+    least = min(abs(x), abs(y), abs(z))
+    helper = (1.0, 0.0, 0.0) if abs(x) == least else (0.0, 1.0, 0.0) if abs(y) == least else (0.0, 0.0, 1.0)
+    first = cross(direction, np.array(helper))
+    first /= math.sqrt(first @ first)
+    return first, cross(direction, first)
 
 
 def across(vectors: Array, direction: Array) -> Array:
@@ -41,4 +60,5 @@ def nearest_on_line(point: Array, start: Array, direction: Array) -> Array:
 
 def angle_between(one: Array, other: Array) -> float:
     """Return the angle between two directions (3,), 0 to pi rad; sharp for small angles too."""
-    return float(np.arctan2(np.linalg.norm(np.cross(one, other)), one @ other))
+    normal = cross(one, other)
+    return math.atan2(math.sqrt(normal @ normal), one @ other)

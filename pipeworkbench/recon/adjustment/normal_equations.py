@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Sparse normal equations by components, stations and cameras: solution and covariance.
+
+Components are bound to each other by joints only, so that their part falls apart into one block per connected
+pipeline; stations and cameras border it. Covariances come block by block, the border by its Schur complement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse import coo_matrix, csc_matrix, diags
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+
+from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, Chart
+from pipeworkbench.recon.adjustment.conditions import Row
+from pipeworkbench.recon.adjustment.observations import Groups, Reduced
+from pipeworkbench.recon.camera import Array
+
+LEAST_INFORMATION = 1e-8  # 1 / mm^2; what is known before: a component is within 10 m of where it was
+FRAME_LEVER = 1000.0  # mm; a frame's rotations count by what they move at this distance
+LARGEST_DENSE = 900  # unknowns of a connected part that is inverted as a whole
+COLUMNS = 256  # of a covariance that is solved for at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A station or a camera whose pose is an unknown.
+
+    views are the numbers of the images that move with it; origin (3,) is the point that it turns about, mm; the sigmas
+    (mm, rad) say how well its pose ``deviation`` (6,), so far, from the given one is known to be zero. A ``camera`` moves in its station.
+    """
+
+    name: str
+    camera: bool
+    views: frozenset[int]
+    origin: Array
+    sigma_position: float
+    sigma_rotation: float
+    deviation: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """Where each component's and frame's unknowns are.
+
+    basis (c, 9, 9): a component's unknowns to its motion, zero columns where it has fewer; ``names`` of its unknowns, their
+    count (c,) and start (c,); reference (c, 3) mm; frames with ``frame_start`` (f,); total.
+    """
+
+    basis: Array
+    names: tuple[tuple[str, ...], ...]
+    count: NDArray[np.intp]
+    start: NDArray[np.intp]
+    reference: Array
+    frames: tuple[Frame, ...]
+    frame_start: NDArray[np.intp]
+    total: int
+
+    @property
+    def own(self) -> int:
+        """The number of the components' unknowns; those of frames follow."""
+        return int(self.count.sum())
+
+    def columns(self, component: int) -> NDArray[np.intp]:
+        """Return the numbers of a component's unknowns."""
+        return np.arange(self.start[component], self.start[component] + self.count[component])
+
+    def motions(self, step: Array) -> Array:
+        """Return the motions (c, 9) of a step (u,)."""
+        padded = np.zeros((len(self.count), MOTION))
+        column = np.arange(MOTION)
+        there = column < self.count[:, None]
+        padded[there] = step[(self.start[:, None] + column)[there]]
+        return np.asarray(np.einsum("cij,cj->ci", self.basis, padded))
+
+
+def unknowns_of(charts: Sequence[Chart], free: Sequence[frozenset[str]], frames: Sequence[Frame]) -> Unknowns:
+    """Return the unknowns of components of whose charts the parameters in ``free`` may change, and of frames."""
+    basis = np.zeros((len(charts), MOTION, MOTION))
+    count = np.zeros(len(charts), np.intp)
+    names: list[tuple[str, ...]] = []
+    for row, (chart, wanted) in enumerate(zip(charts, free, strict=True)):
+        columns = [column for column, name in enumerate(chart.names) if name in wanted]
+        names.append(tuple(chart.names[column] for column in columns))
+        basis[row, :, : len(columns)] = chart.basis[:, columns]
+        count[row] = len(columns)
+    own = int(count.sum())
+    reference = np.array([chart.reference for chart in charts]).reshape(-1, 3)
+    frame_start = own + RIGID * np.arange(len(frames))
+    return Unknowns(basis, tuple(names), count, np.cumsum(count) - count, reference, tuple(frames), frame_start, own + RIGID * len(frames))
+
+
+@dataclass(frozen=True, eq=False)
+class NormalEquations:
+    """N x = n for all unknowns; ``pseudo`` (r, u) and ``pseudo_weight`` (r,) are the rows of the pseudo-observations in it."""
+
+    matrix: csc_matrix
+    right: Array
+    pseudo: csc_matrix
+    pseudo_weight: Array
+    unknowns: Unknowns
+
+    def solve(self, damping: float = 0.0) -> Array:
+        """Return the step (u,) of Levenberg and Marquardt with a damping relative to the diagonal."""
+        if not len(self.right):
+            return np.zeros(0)
+        matrix = self.matrix
+        if damping:
+            matrix = matrix + diags(damping * matrix.diagonal(), format="csc")
+        factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        return np.asarray(factor.solve(self.right))
+
+
+def frame_motion(frame: Frame, reference: Array) -> Array:
+    """Return how components, by their motions about references (g, 3), seem to move when a frame does: (g, 6, 6).
+
+    A camera that moves by t and turns by w about its origin sees what it would if all else moved the other way.
+    """
+    offset = reference - frame.origin
+    transform = np.zeros((len(reference), RIGID, RIGID))
+    transform[:, :3, :3] = -np.eye(3)
+    transform[:, 3:, 3:] = -np.eye(3) / FRAME_LEVER
+    # (X - o) x N = (X - p) x N + (p - o) x N
+    x, y, z = offset.T / FRAME_LEVER
+    zero = np.zeros_like(x)
+    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
+    transform[:, :3, 3:] = -np.swapaxes(cross, 1, 2)
+    return transform
+
+
+def normal_equations(groups: Groups, systems: Reduced, rows: Sequence[Row], unknowns: Unknowns) -> NormalEquations:
+    """Sum up the normal equations of image contours and pseudo-observations."""
+    count = len(unknowns.count)
+    blocks, right = np.zeros((count, MOTION, MOTION)), np.zeros((count, MOTION))
+    np.add.at(blocks, groups.owner, systems.normal[:, :MOTION, :MOTION])
+    np.add.at(right, groups.owner, systems.normal[:, :MOTION, MOTION])
+    basis = unknowns.basis
+    own_blocks = np.swapaxes(basis, 1, 2) @ blocks @ basis
+    own_right = np.einsum("cij,ci->cj", basis, right)
+    column = np.arange(MOTION)
+    there = column < unknowns.count[:, None]
+    places = unknowns.start[:, None] + column
+    pair = there[:, :, None] & there[:, None, :]
+    shape = pair.shape
+    line = [np.broadcast_to(places[:, :, None], shape)[pair]]
+    along = [np.broadcast_to(places[:, None, :], shape)[pair]]
+    value = [own_blocks[pair]]
+    vector = np.zeros(unknowns.total)
+    vector[places[there]] = own_right[there]
+    for number, frame in enumerate(unknowns.frames):
+        for some in _of_frame(groups, systems, unknowns, number, frame, vector):
+            line.append(some[0])
+            along.append(some[1])
+            value.append(some[2])
+    pseudo, weight, misclosure = pseudo_rows(rows, unknowns)
+    weighted = diags(weight) @ pseudo
+    matrix = coo_matrix((np.concatenate(value), (np.concatenate(line), np.concatenate(along))), shape=(unknowns.total,) * 2)
+    matrix = csc_matrix(matrix) + pseudo.T @ weighted + diags(np.full(unknowns.total, LEAST_INFORMATION), format="csc")
+    return NormalEquations(csc_matrix(matrix), vector + weighted.T @ misclosure, pseudo, weight, unknowns)
+
+
+def _of_frame(groups: Groups, systems: Reduced, unknowns: Unknowns, number: int, frame: Frame, vector: Array) -> Iterator[tuple[Array, Array, Array]]:
+    """Yield rows, columns and values of a frame's part of the matrix, and add to the right side."""
+    start = unknowns.frame_start[number]
+    places = start + np.arange(RIGID)
+    mine = np.flatnonzero(np.isin(groups.view, list(frame.views)))
+    transform = frame_motion(frame, unknowns.reference[groups.owner[mine]])
+    normal = systems.normal[mine]
+    rigid = normal[:, :RIGID, :RIGID]
+    prior = np.repeat([frame.sigma_position, frame.sigma_rotation * FRAME_LEVER], 3) ** -2.0
+    block = np.einsum("gai,gab,gbj->ij", transform, rigid, transform) + np.diag(prior)
+    vector[places] += np.einsum("gai,ga->i", transform, normal[:, :RIGID, MOTION])
+    scaled = frame.deviation * np.repeat([1.0, FRAME_LEVER], 3)
+    vector[places] -= prior * scaled
+    yield np.repeat(places, RIGID), np.tile(places, RIGID), block.ravel()
+    # with the components
+    between = np.zeros((len(unknowns.count), MOTION, RIGID))
+    np.add.at(between, groups.owner[mine], normal[:, :MOTION, :RIGID] @ transform)
+    between = np.swapaxes(unknowns.basis, 1, 2) @ between
+    component = np.unique(groups.owner[mine])
+    column = np.arange(MOTION)
+    there = np.zeros((len(unknowns.count), MOTION), bool)
+    there[component] = column < unknowns.count[component, None]
+    line = np.repeat((unknowns.start[:, None] + column)[there], RIGID)
+    along = np.tile(places, int(there.sum()))
+    values = between[there].ravel()
+    yield line, along, values
+    yield along, line, values
+    # with the frames before it whose images are the same: a camera's with its station's
+    for other in range(number):
+        shared = np.isin(groups.view[mine], list(unknowns.frames[other].views))
+        if not shared.any():
+            continue
+        theirs = frame_motion(unknowns.frames[other], unknowns.reference[groups.owner[mine[shared]]])
+        block = np.einsum("gai,gab,gbj->ij", transform[shared], rigid[shared], theirs)
+        there_too = unknowns.frame_start[other] + np.arange(RIGID)
+        yield np.repeat(places, RIGID), np.tile(there_too, RIGID), block.ravel()
+        yield np.repeat(there_too, RIGID), np.tile(places, RIGID), block.T.ravel()
+
+
+def pseudo_rows(rows: Sequence[Row], unknowns: Unknowns) -> tuple[csc_matrix, Array, Array]:
+    """Return the rows (r, u) by the unknowns, their weights and misclosures (r,)."""
+    parts = [(number, component, derivative) for number, row in enumerate(rows) for component, derivative in row.parts]
+    shape = (len(rows), unknowns.total)
+    weight = np.array([row.sigma for row in rows]) ** -2.0
+    misclosure = np.array([row.misclosure for row in rows])
+    if not parts:
+        return csc_matrix(shape), weight, misclosure
+    number, component = np.array([part[0] for part in parts]), np.array([part[1] for part in parts])
+    values = np.einsum("ri,rij->rj", np.array([part[2] for part in parts]), unknowns.basis[component])
+    column = np.arange(MOTION)
+    there = column < unknowns.count[component, None]
+    places = (unknowns.start[component, None] + column)[there]
+    matrix = coo_matrix((values[there], (np.repeat(number, unknowns.count[component]), places)), shape=shape)
+    return csc_matrix(matrix), weight, misclosure
+
+
+@dataclass(frozen=True, eq=False)
+class Covariance:
+    """Cofactors of the unknowns, block by block.
+
+    parts are connected pipelines: their unknowns' numbers (p,) and the cofactor matrix (p, p); part_of_unknown (u,) and place (u,) an
+    unknown's part and row in its part; border (b, b) the cofactors of the frames,
+    with_border (u, b) those between components and frames.
+    """
+
+    parts: tuple[tuple[NDArray[np.intp], Array], ...]
+    part_of_unknown: NDArray[np.intp]
+    place: NDArray[np.intp]
+    border: Array
+    with_border: Array
+
+    def of(self, numbers: NDArray[np.intp]) -> Array:
+        """Return the cofactors (p, p) of some unknowns of one part."""
+        if not len(numbers):
+            return np.zeros((0, 0))
+        rows = self.place[numbers]
+        return self.parts[self.part_of_unknown[numbers[0]]][1][np.ix_(rows, rows)]
+
+    def between(self, unknowns: Unknowns, components: NDArray[np.intp], places: NDArray[np.intp]) -> Array:
+        """Return the cofactors (m, 9, p) between the motions of components (m,) and some of the frames' unknowns (p,)."""
+        column = np.arange(MOTION)
+        there = column < unknowns.count[components, None]
+        padded = np.zeros((len(components), MOTION, len(places)))
+        padded[there] = self.with_border[(unknowns.start[components, None] + column)[there]][:, places]
+        return np.asarray(unknowns.basis[components] @ padded)
+
+    def same_part(self, numbers: NDArray[np.intp]) -> bool:
+        """Tell whether unknowns are of one connected part."""
+        return len(np.unique(self.part_of_unknown[numbers])) <= 1
+
+
+def covariance(equations: NormalEquations) -> Covariance:
+    """Return the cofactors of all unknowns: N^-1, but for those between pipelines that no joint connects."""
+    own, total = equations.unknowns.own, equations.unknowns.total
+    matrix = equations.matrix.tocsr()
+    inner, side = matrix[:own, :own], matrix[:own, own:].toarray()
+    count, label = connected_components(inner + _together(equations.unknowns), directed=False) if own else (0, np.zeros(0, np.intp))
+    order = np.argsort(label, kind="stable")
+    bounds = np.concatenate([[0], np.cumsum(np.bincount(label, minlength=count))])
+    schur = matrix[own:, own:].toarray()
+    inverses, shares, numbers = [], [], []
+    for part in range(count):
+        rows = order[bounds[part] : bounds[part + 1]]
+        inverse = _inverse(inner[rows][:, rows].tocsc())
+        inverses.append(inverse)
+        numbers.append(rows)
+        share = inverse @ side[rows]
+        shares.append(share)
+        if total > own:
+            schur -= side[rows].T @ share
+    border = np.linalg.inv(schur) if total > own else np.zeros((0, 0))
+    place, with_border = np.zeros(own, np.intp), np.zeros((own, total - own))
+    for rows, share in zip(numbers, shares, strict=True):
+        place[rows] = np.arange(len(rows))
+        with_border[rows] = -share @ border
+    parts = tuple((rows, inverse + share @ border @ share.T) for rows, inverse, share in zip(numbers, inverses, shares, strict=True))
+    return Covariance(parts, label, place, border, with_border)
+
+
+def _together(unknowns: Unknowns) -> csc_matrix:
+    """Return a matrix (u, u) of the components' unknowns that binds each one's to each other: what nothing observes belongs to its component."""
+    own = unknowns.own
+    first = np.repeat(unknowns.start, unknowns.count)
+    return csc_matrix((np.ones(own), (first, np.arange(own))), shape=(own, own))
+
+
+def _inverse(matrix: csc_matrix) -> Array:
+    """Return the inverse (p, p) of a sparse positive definite matrix."""
+    if matrix.shape[0] <= LARGEST_DENSE:
+        return np.asarray(cho_solve(cho_factor(matrix.toarray()), np.eye(matrix.shape[0])))
+    factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    size = matrix.shape[0]
+    columns = [factor.solve(np.eye(size, min(COLUMNS, size - first), -first)) for first in range(0, size, COLUMNS)]
+    return np.concatenate(columns, axis=1)
