@@ -34,6 +34,8 @@ bench: setup  ## accuracy and time of the steps, beside peers where these are to
 	$(python) bench/measuring.py
 	$(python) bench/reconstruct.py
 	[ ! -d ../shared ] || $(python) bench/elbows_flanges.py ../shared --out $(results)/elbows_flanges.md
+	[ ! -d ../shared ] || $(python) bench/adjust.py ../shared --out $(results)/adjust.md
+	$(python) bench/register.py
 
 docs: setup  ## write the reference of the reconstruction modules to build/docs
 	$(python) -m pip install -q --disable-pip-version-check -c requirements/freecad-debian12.txt -e '.[docs]'

@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-from pipeworkbench import __version__
+from pipeworkbench import __version__, cli_place
 from pipeworkbench.catalogue import using_folder
 from pipeworkbench.errors import InputError, PipeWorkbenchError, one_line
 
@@ -26,10 +26,12 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from pipeworkbench.pipeline import Pipeline
+    from pipeworkbench.recon.adjust import AdjustmentSettings, Solution
     from pipeworkbench.recon.pick_settings import PickSettings
     from pipeworkbench.recon.picks import Picks
     from pipeworkbench.recon.reconstruct import Alternative, Reconstruction
     from pipeworkbench.recon.station import Station
+    from pipeworkbench.recon.together import Together
 
 SMALLEST_MM, LARGEST_MM, NEAREST_MM = 1.0, 200_000.0, 200.0  # of ranges that make sense
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0}  # in mm
@@ -78,14 +80,19 @@ def _parser() -> argparse.ArgumentParser:
         description="Reconstructs the pipes of a station, picked or found by themselves, and writes them in the formats of the outputs' endings.",
         epilog="Endings: .json .csv .ifc .step .FCStd .png. Lengths are mm in the station's level frame.",
     )
-    command.add_argument("station", metavar="STATION_DIR", type=Path, help="folder with station.json (or that file)")
-    command.add_argument("--picks", metavar="FILE", type=Path, help="picks.json; default: the one beside station.json")
+    command.add_argument("station", metavar="STATION_DIR", type=Path, nargs="+", help="folder with station.json (or that file); several are merged")
+    command.add_argument(
+        "--picks", metavar="FILE", type=Path, action="append", help="picks.json, once per station; default: the one beside station.json"
+    )
     command.add_argument("--auto", action="store_true", help="find the pipes without picks; most, not all of them: look at the .png")
     command.add_argument("--flanges", action="store_true", help="with --auto: look for flanges along the pipes, too; takes some seconds more")
     command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output, may be repeated")
     command.add_argument("--working-range", metavar=("NEAR", "FAR"), nargs=2, type=float, help="distances of the pipes from the rig in mm")
     command.add_argument("--diameters", metavar=("FROM", "TO"), nargs=2, type=float, help="outside diameters to consider in mm")
     command.add_argument("--alternatives", metavar="N", type=int, default=1, help=f"list up to N ranked answers per pick (at most {MOST_LISTED})")
+    command.add_argument("--no-adjustment", action="store_true", help="leave out the common adjustment: every component stays as it was found")
+    command.add_argument("--tolerance", action="store_true", help="standard sizes may deviate by their tolerances; default: they are exact")
+    command.add_argument("--aligned", action="store_true", help="runs that are nearly level, plumb or square are taken to be so, with little weight")
     command.add_argument("--quiet", action="store_true", help="no table, no progress, no warnings")
     command.add_argument("--json", action="store_true", help="print a machine-readable summary instead of the table")
     _add_catalogue(command)
@@ -116,6 +123,7 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
     command.add_argument("--quiet", action="store_true", help="no output, no warnings")
     _add_catalogue(command)
     command.set_defaults(run=_convert)
+    cli_place.add_parser(commands)
 
 
 def _add_catalogue(command: argparse.ArgumentParser) -> None:
@@ -123,37 +131,71 @@ def _add_catalogue(command: argparse.ArgumentParser) -> None:
 
 
 def _reconstruct(options: argparse.Namespace) -> int:
-    from pipeworkbench.exports.writers import Result, check_paths, write
-    from pipeworkbench.recon.reconstruct import reconstruct, reconstruct_without_picks
+    from pipeworkbench.exports.writers import check_paths
     from pipeworkbench.recon.station import read_station
 
     began = time.perf_counter()
     check_paths(options.out)
     _check_together(options)
-    station = read_station(options.station)
-    picks_file = options.picks or station.source.parent / "picks.json"
-    check_paths(options.out, inputs=(station.source, picks_file, *station.images))
-    picks = None if options.auto else _picks_of(picks_file, station)
-    settings = _settings_of(options, picks)
-    show = not options.quiet and not options.json
-    with _Progress(show=show) as progress:
-        if picks is None:
-            found = reconstruct_without_picks(station, settings, progress, flanges=options.flanges)
-        else:
-            found = reconstruct(station, picks, settings, progress, options.alternatives)
+    stations = [read_station(path) for path in options.station]
+    files = options.picks or [station.source.parent / "picks.json" for station in stations]
+    check_paths(options.out, inputs=[path for station in stations for path in (station.source, *station.images)] + files)
+    picks = None if options.auto else [_picks_of(file, station) for file, station in zip(files, stations, strict=True)]
+    found, separate = _found(options, stations, picks)
     if not found.pipeline.components:
         if options.json:
             print(json.dumps(_summary(found, (), time.perf_counter() - began)))
-        raise _nothing_found(found, station.source if picks is None else picks_file, auto=picks is None)
-    result = Result(found.pipeline, (station,))
-    for path in options.out:
-        write(result, path)
+        raise _nothing_found(found, stations[0].source if picks is None else files[0], auto=picks is None)
+    outputs = _written(options.out, found.pipeline, separate, stations)
     seconds = time.perf_counter() - began
     if options.json:
-        print(json.dumps(_summary(found, options.out, seconds)))
-    elif show:
-        _print_table(found, options.out, seconds)
+        print(json.dumps(_summary(found, outputs, seconds)))
+    elif not options.quiet:
+        _print_table(found, outputs, seconds)
     return DONE
+
+
+def _found(options: argparse.Namespace, stations: Sequence[Station], picks: Sequence[Picks] | None) -> tuple[Reconstruction, tuple[Pipeline, ...]]:
+    """Return what is in the images, and the stations that could not be merged."""
+    from pipeworkbench.recon.reconstruct import reconstruct, reconstruct_without_picks
+    from pipeworkbench.recon.together import reconstruct_together
+
+    settings, adjustment = _settings_of(options, picks), _adjustment_of(options)
+    with _Progress(show=not options.quiet and not options.json) as progress:
+        if len(stations) > 1:
+            merged = reconstruct_together(stations, picks, settings, progress, flanges=options.flanges, adjustment=adjustment)
+            return _as_one(merged), merged.separate
+        if picks is None:
+            return reconstruct_without_picks(stations[0], settings, progress, flanges=options.flanges, adjustment=adjustment), ()
+        return reconstruct(stations[0], picks[0], settings, progress, options.alternatives, adjustment=adjustment), ()
+
+
+def _written(paths: Sequence[Path], pipeline: Pipeline, separate: Sequence[Pipeline], stations: Sequence[Station]) -> list[Path]:
+    """Write the pipeline, and beside it, so that nothing is lost, those of stations that could not be merged."""
+    from pipeworkbench.exports.writers import Result, write
+
+    outputs = []
+    for one in (pipeline, *separate):
+        for path in paths:
+            own = path if one is pipeline else path.with_stem(f"{path.stem}-{one.frame}")
+            write(Result(one, tuple(stations)), own)
+            outputs.append(own)
+    return outputs
+
+
+def _as_one(merged: Together) -> Reconstruction:
+    """Return several stations' reconstruction as if it were one station's; failed picks say whose they are."""
+    failed = [pick._replace(reason=f"{name}: {pick.reason}") for name, station in merged.stations.items() for pick in station.failed_picks]
+    first = next(iter(merged.stations.values()))
+    return replace(first, pipeline=merged.pipeline, failed_picks=tuple(failed), warnings=merged.warnings, adjustment=merged.adjustment)
+
+
+def _adjustment_of(options: argparse.Namespace) -> AdjustmentSettings | None:
+    from pipeworkbench.recon.adjust import AdjustmentSettings
+
+    if options.no_adjustment:
+        return None
+    return AdjustmentSettings(sizes="tolerance" if options.tolerance else "exact", aligned=options.aligned)
 
 
 def _check_together(options: argparse.Namespace) -> None:
@@ -162,6 +204,14 @@ def _check_together(options: argparse.Namespace) -> None:
         raise InputError(COMMAND_LINE, "--auto", "finds the pipes without picks, and --picks names some", "give one of the two")
     if options.flanges and not options.auto:
         raise InputError(COMMAND_LINE, "--flanges", "goes with --auto: flanges of picked pipes are picked, too", "leave it out, or give --auto")
+    if options.picks is not None and len(options.picks) != len(options.station):
+        raise InputError(
+            COMMAND_LINE, "--picks", f"is given {len(options.picks)} times for {len(options.station)} stations", "give it once per station"
+        )
+    if options.no_adjustment and (options.tolerance or options.aligned):
+        raise InputError(COMMAND_LINE, "--no-adjustment", "leaves out what --tolerance and --aligned are for", "give one or the other")
+    if len(options.station) > 1 and options.alternatives > 1:
+        raise InputError(COMMAND_LINE, "--alternatives", "ranks what one station's picks can mean", "name one station")
     if not 1 <= options.alternatives <= MOST_LISTED:
         raise InputError(COMMAND_LINE, "--alternatives", f"is {options.alternatives}", f"give a number from 1 to {MOST_LISTED}")
     if options.auto and options.alternatives > 1:
@@ -185,7 +235,7 @@ def _picks_of(file: Path, station: Station) -> Picks:
     return picks
 
 
-def _settings_of(options: argparse.Namespace, picks: Picks | None) -> PickSettings:
+def _settings_of(options: argparse.Namespace, picks: Sequence[Picks] | None) -> PickSettings:
     """Return the settings that the options ask for; the picks say whether standard diameters are needed."""
     from pipeworkbench.recon.pick_settings import PickSettings, sizes_in
 
@@ -197,7 +247,7 @@ def _settings_of(options: argparse.Namespace, picks: Picks | None) -> PickSettin
     if options.diameters is not None:
         settings = replace(settings, diameter_range=_range(options.diameters, "--diameters"))
         # a pick that gives its diameter, or is free, needs none: then only the others fail
-        standard = picks is None or all(pick.diameter is None for pick in picks.pipes)
+        standard = picks is None or all(pick.diameter is None for one in picks for pick in one.pipes)
         if standard and not sizes_in(settings):
             raise InputError(COMMAND_LINE, "--diameters", "holds no diameter of EN 10220", "widen it, or pick with a free diameter")
     return settings
@@ -278,9 +328,23 @@ def _summary(found: Reconstruction, outputs: Sequence[Path], seconds: float) -> 
         "seconds": round(seconds, 2),
         "components": found.pipeline.to_dict()["components"],
     }
+    if found.adjustment is not None:
+        summary["adjustment"] = _adjustment_summary(found.adjustment)
     if found.alternatives:
         summary["alternatives"] = [{"pick": index, "ranked": _ranked(found.alternatives[index])} for index in sorted(found.alternatives)]
     return summary
+
+
+def _adjustment_summary(solution: Solution) -> dict[str, object]:
+    numbers = {"sigma0": solution.sigma0, "sigma_image_px": solution.sigma_image, "redundancy": solution.redundancy}
+    return {
+        **{name: round(value, 4) if math.isfinite(value) else None for name, value in numbers.items()},
+        "iterations": solution.iterations,
+        "converged": solution.converged,
+        "message": solution.message,
+        "undetermined": solution.undetermined,
+        "gross": [{"what": one.what, "size": one.size, "left_out": one.left_out} for one in solution.gross],
+    }
 
 
 def _ranked(alternatives: Sequence[Alternative]) -> list[dict[str, object]]:
@@ -308,7 +372,8 @@ def _print_table(found: Reconstruction, outputs: Sequence[Path], seconds: float)
 
     # a fixed width where there is no terminal: a table in a file is not cut at 80 columns
     console = Console(width=None if sys.stdout.isatty() else 120, highlight=False)
-    table = Table(title=f"Station {found.pipeline.frame}", title_justify="left")
+    names = list(found.pipeline.stations)
+    table = Table(title=f"Station{'s' if len(names) > 1 else ''} {', '.join(names)}", title_justify="left")
     for column in TERMINAL_COLUMNS:
         table.add_column(column, justify="left" if column == "remarks" else "right")
     for component in found.pipeline.components:
@@ -320,6 +385,10 @@ def _print_table(found: Reconstruction, outputs: Sequence[Path], seconds: float)
         console.print(f"Pick {index} failed: {one_line(reason)}.", soft_wrap=True, markup=False)
     if found.alternatives:
         _print_alternatives(found.alternatives, console)
+    if found.adjustment is not None:
+        left_out = sum(one.left_out for one in found.adjustment.gross)
+        how = f"sigma0 {found.adjustment.sigma0:.2f}, {found.adjustment.iterations} iterations, gross errors left out: {left_out}"
+        console.print(f"Adjusted: {how}.", soft_wrap=True, markup=False)
     for warning in found.warnings:
         console.print(f"Note: {one_line(warning)}", soft_wrap=True, markup=False)
     for path in outputs:

@@ -38,7 +38,7 @@ def refusal(out, capsys, caplog):
     """Give a function that runs a command which must be refused and returns the line it said."""
 
     def run(station, *more, output=None):
-        status = main(["reconstruct", str(station), "--out", str(output or out / "result.json"), *map(str, more)])
+        status = main(["reconstruct", "--out", str(output or out / "result.json"), str(station), *map(str, more)])
         said = capsys.readouterr()
         assert status == 2
         assert said.out == ""
@@ -308,6 +308,24 @@ def test_number_of_alternatives_that_is_none_is_refused(sample, refusal, number)
 
 def test_as_many_alternatives_are_listed_as_a_pick_may_name():
     assert MOST_LISTED == MOST_ALTERNATIVES
+
+
+def test_picks_are_given_once_per_station(sample, refusal):
+    line = refusal(sample, sample, "--picks", sample / "picks.json")
+    assert "--picks" in line
+    assert "2 stations" in line
+
+
+def test_alternatives_of_several_stations_are_refused(sample, refusal):
+    assert "--alternatives" in refusal(sample, sample, "--alternatives", "2")
+
+
+def test_tolerances_without_an_adjustment_are_refused(sample, refusal):
+    assert "--no-adjustment" in refusal(sample, "--no-adjustment", "--tolerance")
+
+
+def test_two_stations_of_one_name_are_refused(sample, refusal):
+    assert "name" in refusal(sample, sample)
 
 
 def test_alternatives_without_picks_are_refused(sample, refusal):
