@@ -11,6 +11,7 @@ import io
 import json
 import logging
 import math
+import re
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -173,11 +174,16 @@ def _found(options: argparse.Namespace, stations: Sequence[Station], picks: Sequ
 def _written(paths: Sequence[Path], pipeline: Pipeline, separate: Sequence[Pipeline], stations: Sequence[Station]) -> list[Path]:
     """Write the pipeline, and beside it, so that nothing is lost, those of stations that could not be merged."""
     from pipeworkbench.exports.writers import Result, write
+    from pipeworkbench.pipeline import free_id
 
-    outputs = []
-    for one in (pipeline, *separate):
+    outputs = list(paths)
+    for path in paths:
+        write(Result(pipeline, tuple(stations)), path)
+    for one in separate:
+        # a station may be called what no file can be
+        name = re.sub(r"[^\w.-]", "_", one.frame)
         for path in paths:
-            own = path if one is pipeline else path.with_stem(f"{path.stem}-{one.frame}")
+            own = path.with_stem(free_id(f"{path.stem}-{name}", {other.stem for other in outputs if other.suffix == path.suffix}))
             write(Result(one, tuple(stations)), own)
             outputs.append(own)
     return outputs

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import itertools
 import json
 import math
+from collections.abc import Container
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
@@ -405,6 +407,11 @@ def moved(component: AnyComponent, b_from_a: Matrix) -> AnyComponent:
     changes: dict[str, Any] = {name: turned(getattr(component, name), 1) for name in POINTS & names}
     changes |= {name: turned(getattr(component, name), 0) for name in DIRECTIONS & names}
     return dataclasses.replace(component, **changes)
+
+
+def free_id(name: str, used: Container[str]) -> str:
+    """Return an id that is not used: the wished one, or that with the first number from 2 on that is free."""
+    return next(new for new in itertools.chain([name], (f"{name}.{number}" for number in itertools.count(2))) if new not in used)
 
 
 def _port(inside: Vector, point: Vector, diameter: float) -> Port:

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 from conftest import ROOT, altered_station
 
+from pipeworkbench import cli
 from pipeworkbench.cli import MOST_LISTED, main
-from pipeworkbench.pipeline import Pipeline
+from pipeworkbench.pipeline import Pipe, Pipeline
 from pipeworkbench.recon.picks import MOST_ALTERNATIVES, read_picks
 from pipeworkbench.recon.station import read_station
 
@@ -673,3 +674,13 @@ def test_pipes_are_found_without_picks_and_agree_with_the_known_truth(sample, sh
     assert found["false_pipes"] <= 1
     assert found["duplicate_pipes"] == 0
     assert found["pipes"]["position_mm"]["mean"] <= 1.0
+
+
+def test_stations_that_stay_apart_are_written_beside_whatever_they_are_called(tmp_path):
+    pipelines = [
+        Pipeline.of_station(name, (Pipe(id="P1", start=(0, 0, 0), end=(0, 0, 900.0), outer_diameter=48.3),)) for name in ("A", "../B:1", "..?B 1")
+    ]
+    outputs = cli._written([tmp_path / "plant.json", tmp_path / "plant.csv"], pipelines[0], pipelines[1:], ())
+    assert len(set(outputs)) == 6
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(path.name for path in outputs)
+    assert {Pipeline.read(path).frame for path in outputs if path.suffix == ".json"} == {"A", "../B:1", "..?B 1"}

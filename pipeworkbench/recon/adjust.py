@@ -24,17 +24,17 @@ from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem, 
 from pipeworkbench.recon.adjustment.report import Outcome, solution_of
 from pipeworkbench.recon.adjustment.sampling import Samples
 from pipeworkbench.recon.adjustment.slides import slid
-from pipeworkbench.recon.adjustment.solution import ContourFit, Estimate, Gross, Pose, PseudoFit, Solution, Weak
+from pipeworkbench.recon.adjustment.solution import AdjustedStation, ContourFit, Estimate, Gross, PseudoFit, Solution, Weak
 from pipeworkbench.recon.adjustment.state import State
 from pipeworkbench.recon.adjustment.variances import assessed, estimated, gross_contours, near, wrongly_left_out
 from pipeworkbench.recon.camera import Array
 
 __all__ = [
+    "AdjustedStation",
     "AdjustmentSettings",
     "ContourFit",
     "Estimate",
     "Gross",
-    "Pose",
     "Problem",
     "PseudoFit",
     "Solution",
@@ -109,15 +109,13 @@ def adjust(
             break
         left_out = gross if variances.left_out is None else gross | variances.left_out
         variances = replace(better, left_out=left_out)
-        again = linearised(run.last.state, samples, settings.ranges[-1], variances, settings)
-        run = _settled(again, samples, variances, settings, run.iterations, 0, progress)
+        run = _again(run, samples, variances, settings, progress)
     assessment = assessed(run.last, variances, settings)
     back = wrongly_left_out(assessment, variances, settings)
     if back.any() and variances.left_out is not None:
         # once, so that none goes out and in for ever
         variances = replace(variances, left_out=variances.left_out & ~back)
-        again = linearised(run.last.state, samples, settings.ranges[-1], variances, settings)
-        run = _settled(again, samples, variances, settings, run.iterations, 0, progress)
+        run = _again(run, samples, variances, settings, progress)
         assessment = assessed(run.last, variances, settings)
     return solution_of(Outcome(problem, run.last, assessment, variances, samples, reasons, run.iterations, run.converged, run.message), settings)
 
@@ -194,6 +192,14 @@ def _settled(
         if still or (damping > LEAST_DAMPING and abs(gain) < NO_GAIN):
             return _Run(kept, done + iteration + 1, converged=True, message=STUCK)
     return _Run(kept, done + settings.iterations, converged=False, message=NOT_CONVERGED)
+
+
+def _again(
+    run: _Run, samples: Sequence[Samples], variances: Variances, settings: AdjustmentSettings, progress: Callable[[str, int, int], None]
+) -> _Run:
+    """Iterate on from where another iteration ended, with other variances."""
+    linear = linearised(run.last.state, samples, settings.ranges[-1], variances, settings)
+    return _settled(linear, samples, variances, settings, run.iterations, 0, progress)
 
 
 def _moved(one: Linearisation, other: Linearisation) -> float:

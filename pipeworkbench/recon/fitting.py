@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeworkbench.pipeline import AnyComponent, Elbow, Flange, Pipe, Tee
+from pipeworkbench.pipeline import AnyComponent, Elbow, Flange, Pipe, Tee, free_id
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.caps import FoundCap
 from pipeworkbench.recon.elbows import FoundElbow
@@ -74,7 +74,7 @@ def with_flanges(components: Sequence[AnyComponent]) -> tuple[AnyComponent, ...]
                 result[row], other = other, result[row]  # type: ignore[assignment]
             # a neighbour that was picked itself needs no second copy
             if not _is_known(other, result):
-                result.append(replace(other, id=_piece_id(result, pipe.id), pick=None))
+                result.append(replace(other, id=free_id(pipe.id, {one.id for one in result}), pick=None))
     return tuple(result)
 
 
@@ -271,7 +271,7 @@ def _with_tee(assembly: Assembly, tee: FoundTee) -> Assembly:
     own_end = pieces[0][2]
     # what was joined to the run's far end is now joined to the other piece
     far = {(number + 1, 1 - own_end)} if (row, 1 - own_end) in row_taken else set()
-    extra = replace(extra, id=_piece_id(assembly.components, run.id))
+    extra = replace(extra, id=free_id(run.id, {one.id for one in assembly.components}))
     joined = assembly.added(extra, {}, [(number + 1, pieces[1][2]), *far])
     return replace(joined, taken=joined.taken - {(row, 1 - own_end)}) if far else joined
 
@@ -288,12 +288,6 @@ def _piece(components: Sequence[AnyComponent], tee: FoundTee) -> tuple[int, Pipe
                 return row, component, low, high
     # edges go on beyond the pipe's end
     return tee.run, run, *tee.extent
-
-
-def _piece_id(components: Sequence[AnyComponent], name: str) -> str:
-    """Return an id for another piece of a pipe: its own with the first number from 2 on that is free."""
-    used = {component.id for component in components}
-    return next(new for number in range(2, len(used) + 3) if (new := f"{name}.{number}") not in used)
 
 
 def with_reducers(assembly: Assembly, found: Sequence[FoundReducer]) -> Assembly:

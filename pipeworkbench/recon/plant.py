@@ -21,7 +21,7 @@ from pipeworkbench.recon.registration.pairwise import overlap_of
 from pipeworkbench.recon.registration.poses import Pose
 from pipeworkbench.recon.registration.pretransformation import from_points
 from pipeworkbench.recon.registration.results import CandidatePose
-from pipeworkbench.recon.registration.settings import AdjustmentSettings, RegistrationSettings, SearchSettings
+from pipeworkbench.recon.registration.settings import NetworkSettings, RegistrationSettings, SearchSettings
 from pipeworkbench.recon.registration.solve import Solved, solve
 from pipeworkbench.recon.registration.stations import Stations, stations_of
 from pipeworkbench.recon.vectors import as_vector
@@ -104,7 +104,7 @@ def placed(pipeline: Pipeline, plant_from_frame: Sequence[Sequence[float]], syst
     return replace(pipeline, frame=system, components=components, stations=stations, extra=pipeline.extra | {"georeference": georeference})
 
 
-def placement_on_points(points: Mapping[str, Vector], known: Mapping[str, Vector], settings: AdjustmentSettings | None = None) -> PointPlacement:
+def placement_on_points(points: Mapping[str, Vector], known: Mapping[str, Vector], settings: NetworkSettings | None = None) -> PointPlacement:
     """Return where control points put a frame.
 
     Parameters
@@ -113,14 +113,14 @@ def placement_on_points(points: Mapping[str, Vector], known: Mapping[str, Vector
         By name, in the frame, mm.
     known : mapping
         By name, in the plant's system, mm.
-    settings : AdjustmentSettings, optional
+    settings : NetworkSettings, optional
 
     Raises
     ------
     InputError
         Where fewer than three points are common or all lie in line.
     """
-    settings = settings or AdjustmentSettings()
+    settings = settings or NetworkSettings()
     names = sorted(set(points) & set(known))
     here, there = (np.array([source[name] for name in names], float).reshape(-1, 3) for source in (points, known))
     start = from_points(here, there)

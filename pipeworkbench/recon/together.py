@@ -14,8 +14,7 @@ import numpy as np
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import Pipeline, StationPose
-from pipeworkbench.recon.adjust import AdjustmentSettings, Problem, Solution, StationViews, adjust
-from pipeworkbench.recon.adjust import Pose as AdjustedPose
+from pipeworkbench.recon.adjust import AdjustedStation, AdjustmentSettings, Problem, Solution, StationViews, adjust
 from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.picks import Picks
 from pipeworkbench.recon.reconstruct import ADJUSTED, Reconstruction, reconstruct, reconstruct_without_picks
@@ -147,7 +146,7 @@ def adjusted_together(pipeline: Pipeline, views: Mapping[str, Sequence[View]], s
     return replace(pipeline, components=solution.components, stations=poses, sigma0=sigma0), solution
 
 
-def _with_pose(pose: StationPose, adjusted: AdjustedPose) -> StationPose:
+def _with_pose(pose: StationPose, adjusted: AdjustedStation) -> StationPose:
     """Return a station's pose with what was adjusted and its standard deviations."""
     matrix = Pose.from_matrix(adjusted.frame_from_level).matrix()
     sigma = np.sqrt(np.maximum(np.diag(adjusted.covariance), 0.0))

@@ -37,8 +37,15 @@ def cross(one: Array, other: Array) -> Array:
     return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
 
 
+def cross_matrices(vectors: Array) -> Array:
+    """Return the matrices (..., 3, 3) whose product with another vector is the cross product with it."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    zero = np.zeros_like(x)
+    return np.stack([np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2)
+
+
 def axes_across(direction: Array) -> tuple[Array, Array]:
-    """Return two unit vectors (3,) that form a right-handed frame with a unit direction (3,)."""
+    """Return two unit vectors (3,) that form a right-handed frame with a unit direction (3,): :func:`.cylinder.perpendicular_axes` for one."""
     x, y, z = direction.tolist()
     # the unit vector that is the furthest from it
     least = min(abs(x), abs(y), abs(z))

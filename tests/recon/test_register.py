@@ -13,10 +13,10 @@ from stations import deviation, disturbed, elbow, flange, pipe, places, plant, p
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import Elbow, Flange, Pipe, Pipeline, Tee
 from pipeworkbench.recon.register import CandidatePose, ControlPoints, Pose, RegistrationSettings, merge, register
-from pipeworkbench.recon.registration.settings import AdjustmentSettings
+from pipeworkbench.recon.registration.settings import NetworkSettings
 
 # the inclination sensors are observations that pull towards the vertical: without them made-up stations fit exactly
-EXACT = RegistrationSettings(adjustment=AdjustmentSettings(tilt_deg=None))
+EXACT = RegistrationSettings(adjustment=NetworkSettings(tilt_deg=None))
 HERE, THERE = pose(20, (300, -4000, 100)), pose(75, (2500, -3500, 0), (0.4, -0.3))
 PLANT = plant()
 ALL = {c.id for c in PLANT}

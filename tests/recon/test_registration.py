@@ -16,7 +16,7 @@ from pipeworkbench.recon.registration.network import adjust_network
 from pipeworkbench.recon.registration.observations import jacobians, observations_of, residuals
 from pipeworkbench.recon.registration.poses import Pose, rotated, rotated_by_quaternion
 from pipeworkbench.recon.registration.pretransformation import from_points, from_two_axes, pretransformation
-from pipeworkbench.recon.registration.settings import AdjustmentSettings, SearchSettings
+from pipeworkbench.recon.registration.settings import NetworkSettings, SearchSettings
 
 HERE, THERE = pose(20, (300, -4000, 100)), pose(75, (2500, -3500, 0), (0.4, -0.3))
 TRUE = Pose.from_matrix(np.linalg.inv(HERE) @ THERE)
@@ -105,7 +105,7 @@ def test_what_does_not_fix_a_pose_gives_none():
 def test_the_adjustment_finds_the_pose_from_bad_starting_values(turn, shift):
     one, other = marks()
     start = turned(turn, shift) @ TRUE
-    found = adjust_network(observations_of(one, other, PAIRS, TRUE, (0, 1)), [Pose.identity(), start], 0, AdjustmentSettings(tilt_deg=None))
+    found = adjust_network(observations_of(one, other, PAIRS, TRUE, (0, 1)), [Pose.identity(), start], 0, NetworkSettings(tilt_deg=None))
     assert found.converged
     assert found.poses[1].farthest(TRUE, other.point) < 1e-3
     assert found.poses[0].farthest(Pose.identity(), other.point) < 1e-12
@@ -120,7 +120,7 @@ def test_the_covariance_is_that_of_repeated_adjustments():
         # each landmark off by its own covariance
         drawn = [_drawn(part, rng) for part in (one, other)]
         observed = observations_of(*drawn, PAIRS, TRUE, (0, 1))
-        found = adjust_network(observed, [Pose.identity(), TRUE], 0, AdjustmentSettings(tilt_deg=None, tukey=20.0, huber=20.0))
+        found = adjust_network(observed, [Pose.identity(), TRUE], 0, NetworkSettings(tilt_deg=None, tukey=20.0, huber=20.0))
         off.append(found.poses[1].points(middle) - TRUE.points(middle))
         sigma.append(found.sigma_at(1, middle)[0])
     assert np.allclose(np.std(off, 0) / np.mean(sigma, 0), 1, atol=0.25)

@@ -10,25 +10,24 @@ not move along its axis, nothing with an axis of revolution turns about it. So n
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from pipeworkbench.pipeline import DIRECTIONS, HUBBED_FLANGES, POINTS, AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.shapes import DISH
-from pipeworkbench.recon.vectors import angle_between, as_vector, axes_across, cross, nearest_on_line, unit
+from pipeworkbench.recon.vectors import angle_between, as_vector, axes_across, cross, cross_matrices, nearest_on_line, unit
 
 RIGID, SIZES = 6, 3
 MOTION = RIGID + SIZES
 POSITION, DIRECTION = "position", "direction"
 LEAST_SIZE = 1.0  # mm; no adjustment makes a part smaller
 LEAST_LEVER = 10.0  # mm
-SMALL_ANGLE = 1e-5  # rad; the third power is nothing
 BEND_LIMITS_DEG = 0.5, 179.0
 
 
@@ -65,6 +64,11 @@ SIZE_NAMES: dict[type[AnyComponent], tuple[str, ...]] = {
     Cap: ("outer_diameter",),
 }
 DIAMETERS = ("outer_diameter", "branch_diameter", "end_diameter", "D")
+
+
+def unit_of(name: str) -> float:
+    """Return how many of a size's own units one unit of the motion is: a diameter is twice the radius, angles are in degrees."""
+    return 2.0 if name in DIAMETERS else float(np.degrees(1.0)) if name == "angle_deg" else 1.0
 
 
 def bends(elbow: Elbow) -> bool:
@@ -118,15 +122,6 @@ def _frame(component: AnyComponent) -> tuple[Array, Array, float]:
             return np.array(component.start), unit(component.axis), max(component.length, component.outer_diameter / 2)
 
 
-def rotation(vector: Array) -> Array:
-    """Return the matrix (3, 3) of a rotation vector (3,): Rodrigues' formula, for one at a time."""
-    angle = math.sqrt(vector @ vector)
-    matrix = _cross_matrix(vector)
-    if angle < SMALL_ANGLE:
-        return np.eye(3) + matrix + matrix @ matrix / 2
-    return np.asarray(np.eye(3) + (math.sin(angle) / angle) * matrix + ((1 - math.cos(angle)) / angle**2) * matrix @ matrix)
-
-
 def normalised(component: AnyComponent) -> AnyComponent:
     """Return an elbow with its ends where its bend radius and its axes put them; anything else as it is."""
     return _bent(component, {}) if isinstance(component, Elbow) else component
@@ -135,7 +130,7 @@ def normalised(component: AnyComponent) -> AnyComponent:
 def moved(component: AnyComponent, motion: Array) -> AnyComponent:
     """Return a component after a motion (9,); sizes stay positive."""
     reference, _, _ = _frame(component)
-    turn = rotation(motion[3:RIGID])
+    turn = Rotation.from_rotvec(motion[3:RIGID]).as_matrix()
     changes: dict[str, Any] = {}
     for name in _names_of(type(component).__name__, POINTS):
         changes[name] = as_vector(turn @ (np.array(getattr(component, name)) - reference) + reference + motion[:3])
@@ -144,7 +139,7 @@ def moved(component: AnyComponent, motion: Array) -> AnyComponent:
     sizes: dict[str, float] = {}
     for name, change in zip(SIZE_NAMES[type(component)], motion[RIGID:], strict=False):
         if change:
-            sizes[name] = getattr(component, name) + (2 if name in DIAMETERS else np.degrees(1) if name == "angle_deg" else 1) * float(change)
+            sizes[name] = getattr(component, name) + unit_of(name) * float(change)
     if isinstance(component, Elbow):
         return _bent(replace(component, **changes), sizes)
     for name, size in sizes.items():
@@ -184,7 +179,7 @@ def _bent(elbow: Elbow, sizes: Mapping[str, float]) -> Elbow:
     """Return an elbow with other sizes: both axes turn about the corner by half of the angle's change, the ends follow."""
     come, go, normal = _axes(elbow)
     angle = float(np.radians(np.clip(sizes.get("angle_deg", np.degrees(angle_between(come, go))), *BEND_LIMITS_DEG)))
-    half = rotation((angle - angle_between(come, go)) / 2 * normal)
+    half = Rotation.from_rotvec((angle - angle_between(come, go)) / 2 * normal).as_matrix()
     come, go = half.T @ come, half @ go
     radius = max(sizes.get("bend_radius", elbow.bend_radius), LEAST_SIZE)
     length, corner = radius * np.tan(angle / 2), np.array(elbow.intersection)
@@ -206,8 +201,8 @@ def port_of(component: AnyComponent, number: int) -> MovingPort:
     by_motion = np.zeros((7, MOTION))
     by_motion[:3, :3] = np.eye(3)
     # of w x (X - p), by w
-    by_motion[:3, 3:6] = -_cross_matrix(point - reference)
-    by_motion[3:6, 3:6] = -_cross_matrix(direction)
+    by_motion[:3, 3:6] = -cross_matrices(point - reference)
+    by_motion[3:6, 3:6] = -cross_matrices(direction)
     match component:
         case Elbow():
             angle = np.radians(component.angle_deg)
@@ -229,11 +224,6 @@ def port_of(component: AnyComponent, number: int) -> MovingPort:
         # the face is as wide as the plate
         by_motion[6, RIGID : RIGID + 2] = 0.0, 1.0
     return MovingPort(point, direction, port.diameter / 2, by_motion)
-
-
-def _cross_matrix(vector: Array) -> Array:
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def by_motion(components: list[AnyComponent], owner: NDArray[np.intp], part: NDArray[np.str_], point: Array, outward: Array) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Joint, Pipe, Reducer, Tee
-from pipeworkbench.recon.adjustment.charts import DIAMETERS, MOTION, RIGID, SIZE_NAMES, port_of
+from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, SIZE_NAMES, port_of, unit_of
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.vectors import as_vector, axes_across, cross, unit
@@ -107,7 +107,7 @@ def _of_sizes(
         for column, name in enumerate(SIZE_NAMES[type(component)], RIGID):
             if name not in names:
                 continue
-            factor = 0.5 if name in DIAMETERS else (np.pi / 180 if name == "angle_deg" else 1.0)
+            factor = 1 / unit_of(name)
             nominal = float(getattr(start[component.id], name))
             sigma = FREE_SIGMA
             if name in given:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pipeworkbench.recon.adjustment.charts import MOTION
 from pipeworkbench.recon.adjustment.conditions import Row, rows_of
-from pipeworkbench.recon.adjustment.normal_equations import NormalEquations, Unknowns, frame_motion, normal_equations
+from pipeworkbench.recon.adjustment.normal_equations import NormalEquations, Unknowns, normal_equations
 from pipeworkbench.recon.adjustment.observations import FAR, Groups, Reduced, SampleRows, joined, observe, reduced
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.adjustment.sampling import Samples, samples_of
@@ -90,9 +90,9 @@ class Linearisation:
         """Return how contours' components seem to move (g, 9) with a step (u,), their cameras' own movement included."""
         motions = self.unknowns.motions(step)[self.groups.owner]
         for number, frame in enumerate(self.unknowns.frames):
-            mine = np.flatnonzero(np.isin(self.groups.view, list(frame.views)))
+            mine = frame.of(self.groups.view)
             start = self.unknowns.frame_start[number]
-            transform = frame_motion(frame, self.unknowns.reference[self.groups.owner[mine]])
+            transform = self.unknowns.frame_motions(frame, self.groups.owner[mine])
             motions[mine, :6] += np.einsum("gij,j->gi", transform, step[start : start + 6])
         return motions
 

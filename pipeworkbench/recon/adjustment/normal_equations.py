@@ -15,15 +15,17 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import coo_matrix, csc_matrix, diags
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, Chart
 from pipeworkbench.recon.adjustment.conditions import Row
 from pipeworkbench.recon.adjustment.observations import Groups, Reduced
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.vectors import cross_matrices
 
 LEAST_INFORMATION = 1e-8  # 1 / mm^2; what is known before: a component is within 10 m of where it was
 FRAME_LEVER = 1000.0  # mm; a frame's rotations count by what they move at this distance
+FRAME_UNITS = np.repeat([1.0, FRAME_LEVER], 3)  # of a frame's unknowns in its shift (mm) and turn (rad)
 LARGEST_DENSE = 900  # unknowns of a connected part that is inverted as a whole
 COLUMNS = 256  # of a covariance that is solved for at a time
 
@@ -43,6 +45,10 @@ class Frame:
     sigma_position: float
     sigma_rotation: float
     deviation: Array
+
+    def of(self, view: NDArray[np.intp]) -> NDArray[np.intp]:
+        """Return the rows of the images (g,) that move with it."""
+        return np.flatnonzero(np.isin(view, list(self.views)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,13 +77,31 @@ class Unknowns:
         """Return the numbers of a component's unknowns."""
         return np.arange(self.start[component], self.start[component] + self.count[component])
 
+    def places(self, components: NDArray[np.intp]) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
+        """Return which of nine columns (m, 9) components (m,) have, and the numbers of those unknowns, one component after the other."""
+        column = np.arange(MOTION)
+        there = column < self.count[components, None]
+        return there, (self.start[components, None] + column)[there]
+
     def motions(self, step: Array) -> Array:
         """Return the motions (c, 9) of a step (u,)."""
         padded = np.zeros((len(self.count), MOTION))
-        column = np.arange(MOTION)
-        there = column < self.count[:, None]
-        padded[there] = step[(self.start[:, None] + column)[there]]
+        there, numbers = self.places(np.arange(len(self.count)))
+        padded[there] = step[numbers]
         return np.asarray(np.einsum("cij,cj->ci", self.basis, padded))
+
+    def frame_motions(self, frame: Frame, components: NDArray[np.intp]) -> Array:
+        """Return how components (m,) seem to move when a frame does: (m, 6, 6), by their motions about their references.
+
+        A camera that moves by t and turns by w about its origin sees what it would if all else moved the other way.
+        """
+        offset = self.reference[components] - frame.origin
+        transform = np.zeros((len(components), RIGID, RIGID))
+        transform[:, :3, :3] = -np.eye(3)
+        transform[:, 3:, 3:] = -np.eye(3) / FRAME_LEVER
+        # (X - o) x N = (X - p) x N + (p - o) x N
+        transform[:, :3, 3:] = cross_matrices(offset / FRAME_LEVER)
+        return transform
 
 
 def unknowns_of(charts: Sequence[Chart], free: Sequence[frozenset[str]], frames: Sequence[Frame]) -> Unknowns:
@@ -98,12 +122,10 @@ def unknowns_of(charts: Sequence[Chart], free: Sequence[frozenset[str]], frames:
 
 @dataclass(frozen=True, eq=False)
 class NormalEquations:
-    """N x = n for all unknowns; ``pseudo`` (r, u) and ``pseudo_weight`` (r,) are the rows of the pseudo-observations in it."""
+    """N x = n for all unknowns."""
 
     matrix: csc_matrix
     right: Array
-    pseudo: csc_matrix
-    pseudo_weight: Array
     unknowns: Unknowns
 
     def solve(self, damping: float = 0.0) -> Array:
@@ -113,25 +135,12 @@ class NormalEquations:
         matrix = self.matrix
         if damping:
             matrix = matrix + diags(damping * matrix.diagonal(), format="csc")
-        factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        return np.asarray(factor.solve(self.right))
+        return np.asarray(_factor(matrix).solve(self.right))
 
 
-def frame_motion(frame: Frame, reference: Array) -> Array:
-    """Return how components, by their motions about references (g, 3), seem to move when a frame does: (g, 6, 6).
-
-    A camera that moves by t and turns by w about its origin sees what it would if all else moved the other way.
-    """
-    offset = reference - frame.origin
-    transform = np.zeros((len(reference), RIGID, RIGID))
-    transform[:, :3, :3] = -np.eye(3)
-    transform[:, 3:, 3:] = -np.eye(3) / FRAME_LEVER
-    # (X - o) x N = (X - p) x N + (p - o) x N
-    x, y, z = offset.T / FRAME_LEVER
-    zero = np.zeros_like(x)
-    cross = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
-    transform[:, :3, 3:] = -np.swapaxes(cross, 1, 2)
-    return transform
+def _factor(matrix: csc_matrix) -> SuperLU:
+    """Factor a sparse matrix that is symmetric and positive definite."""
+    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def normal_equations(groups: Groups, systems: Reduced, rows: Sequence[Row], unknowns: Unknowns) -> NormalEquations:
@@ -143,16 +152,15 @@ def normal_equations(groups: Groups, systems: Reduced, rows: Sequence[Row], unkn
     basis = unknowns.basis
     own_blocks = np.swapaxes(basis, 1, 2) @ blocks @ basis
     own_right = np.einsum("cij,ci->cj", basis, right)
-    column = np.arange(MOTION)
-    there = column < unknowns.count[:, None]
-    places = unknowns.start[:, None] + column
+    there, numbers = unknowns.places(np.arange(count))
+    places = np.zeros(there.shape, np.intp)
+    places[there] = numbers
     pair = there[:, :, None] & there[:, None, :]
-    shape = pair.shape
-    line = [np.broadcast_to(places[:, :, None], shape)[pair]]
-    along = [np.broadcast_to(places[:, None, :], shape)[pair]]
+    line = [np.broadcast_to(places[:, :, None], pair.shape)[pair]]
+    along = [np.broadcast_to(places[:, None, :], pair.shape)[pair]]
     value = [own_blocks[pair]]
     vector = np.zeros(unknowns.total)
-    vector[places[there]] = own_right[there]
+    vector[numbers] = own_right[there]
     for number, frame in enumerate(unknowns.frames):
         for some in _of_frame(groups, systems, unknowns, number, frame, vector):
             line.append(some[0])
@@ -162,34 +170,33 @@ def normal_equations(groups: Groups, systems: Reduced, rows: Sequence[Row], unkn
     weighted = diags(weight) @ pseudo
     matrix = coo_matrix((np.concatenate(value), (np.concatenate(line), np.concatenate(along))), shape=(unknowns.total,) * 2)
     matrix = csc_matrix(matrix) + pseudo.T @ weighted + diags(np.full(unknowns.total, LEAST_INFORMATION), format="csc")
-    return NormalEquations(csc_matrix(matrix), vector + weighted.T @ misclosure, pseudo, weight, unknowns)
+    return NormalEquations(csc_matrix(matrix), vector + weighted.T @ misclosure, unknowns)
 
 
-def _of_frame(groups: Groups, systems: Reduced, unknowns: Unknowns, number: int, frame: Frame, vector: Array) -> Iterator[tuple[Array, Array, Array]]:
+def _of_frame(
+    groups: Groups, systems: Reduced, unknowns: Unknowns, number: int, frame: Frame, vector: Array
+) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Array]]:
     """Yield rows, columns and values of a frame's part of the matrix, and add to the right side."""
     start = unknowns.frame_start[number]
     places = start + np.arange(RIGID)
-    mine = np.flatnonzero(np.isin(groups.view, list(frame.views)))
-    transform = frame_motion(frame, unknowns.reference[groups.owner[mine]])
+    mine = frame.of(groups.view)
+    transform = unknowns.frame_motions(frame, groups.owner[mine])
     normal = systems.normal[mine]
     rigid = normal[:, :RIGID, :RIGID]
-    prior = np.repeat([frame.sigma_position, frame.sigma_rotation * FRAME_LEVER], 3) ** -2.0
+    prior = (np.repeat([frame.sigma_position, frame.sigma_rotation], 3) * FRAME_UNITS) ** -2.0
     block = np.einsum("gai,gab,gbj->ij", transform, rigid, transform) + np.diag(prior)
     vector[places] += np.einsum("gai,ga->i", transform, normal[:, :RIGID, MOTION])
-    scaled = frame.deviation * np.repeat([1.0, FRAME_LEVER], 3)
-    vector[places] -= prior * scaled
+    vector[places] -= prior * frame.deviation * FRAME_UNITS
     yield np.repeat(places, RIGID), np.tile(places, RIGID), block.ravel()
     # with the components
     between = np.zeros((len(unknowns.count), MOTION, RIGID))
     np.add.at(between, groups.owner[mine], normal[:, :MOTION, :RIGID] @ transform)
     between = np.swapaxes(unknowns.basis, 1, 2) @ between
     component = np.unique(groups.owner[mine])
-    column = np.arange(MOTION)
-    there = np.zeros((len(unknowns.count), MOTION), bool)
-    there[component] = column < unknowns.count[component, None]
-    line = np.repeat((unknowns.start[:, None] + column)[there], RIGID)
-    along = np.tile(places, int(there.sum()))
-    values = between[there].ravel()
+    there, numbers = unknowns.places(component)
+    line = np.repeat(numbers, RIGID)
+    along = np.tile(places, len(numbers))
+    values = between[component][there].ravel()
     yield line, along, values
     yield along, line, values
     # with the frames before it whose images are the same: a camera's with its station's
@@ -197,7 +204,7 @@ def _of_frame(groups: Groups, systems: Reduced, unknowns: Unknowns, number: int,
         shared = np.isin(groups.view[mine], list(unknowns.frames[other].views))
         if not shared.any():
             continue
-        theirs = frame_motion(unknowns.frames[other], unknowns.reference[groups.owner[mine[shared]]])
+        theirs = unknowns.frame_motions(unknowns.frames[other], groups.owner[mine[shared]])
         block = np.einsum("gai,gab,gbj->ij", transform[shared], rigid[shared], theirs)
         there_too = unknowns.frame_start[other] + np.arange(RIGID)
         yield np.repeat(places, RIGID), np.tile(there_too, RIGID), block.ravel()
@@ -214,9 +221,7 @@ def pseudo_rows(rows: Sequence[Row], unknowns: Unknowns) -> tuple[csc_matrix, Ar
         return csc_matrix(shape), weight, misclosure
     number, component = np.array([part[0] for part in parts]), np.array([part[1] for part in parts])
     values = np.einsum("ri,rij->rj", np.array([part[2] for part in parts]), unknowns.basis[component])
-    column = np.arange(MOTION)
-    there = column < unknowns.count[component, None]
-    places = (unknowns.start[component, None] + column)[there]
+    there, places = unknowns.places(component)
     matrix = coo_matrix((values[there], (np.repeat(number, unknowns.count[component]), places)), shape=shape)
     return csc_matrix(matrix), weight, misclosure
 
@@ -245,10 +250,9 @@ class Covariance:
 
     def between(self, unknowns: Unknowns, components: NDArray[np.intp], places: NDArray[np.intp]) -> Array:
         """Return the cofactors (m, 9, p) between the motions of components (m,) and some of the frames' unknowns (p,)."""
-        column = np.arange(MOTION)
-        there = column < unknowns.count[components, None]
+        there, numbers = unknowns.places(components)
         padded = np.zeros((len(components), MOTION, len(places)))
-        padded[there] = self.with_border[(unknowns.start[components, None] + column)[there]][:, places]
+        padded[there] = self.with_border[numbers][:, places]
         return np.asarray(unknowns.basis[components] @ padded)
 
     def same_part(self, numbers: NDArray[np.intp]) -> bool:
@@ -295,7 +299,7 @@ def _inverse(matrix: csc_matrix) -> Array:
     """Return the inverse (p, p) of a sparse positive definite matrix."""
     if matrix.shape[0] <= LARGEST_DENSE:
         return np.asarray(cho_solve(cho_factor(matrix.toarray()), np.eye(matrix.shape[0])))
-    factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    factor = _factor(matrix)
     size = matrix.shape[0]
     columns = [factor.solve(np.eye(size, min(COLUMNS, size - first), -first)) for first in range(0, size, COLUMNS)]
     return np.concatenate(columns, axis=1)

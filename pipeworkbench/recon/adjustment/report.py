@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import AnyComponent, Pipe
 from pipeworkbench.recon.accuracy import level_of_accuracy
-from pipeworkbench.recon.adjustment.charts import DIAMETERS, RIGID, SIZE_NAMES
+from pipeworkbench.recon.adjustment.charts import RIGID, SIZE_NAMES, unit_of
 from pipeworkbench.recon.adjustment.conditions import FREE_SIGMA
 from pipeworkbench.recon.adjustment.linearisation import Linearisation, Variances, linearised
-from pipeworkbench.recon.adjustment.normal_equations import FRAME_LEVER
+from pipeworkbench.recon.adjustment.normal_equations import FRAME_UNITS
 from pipeworkbench.recon.adjustment.observations import MAD
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem
 from pipeworkbench.recon.adjustment.sampling import Samples
-from pipeworkbench.recon.adjustment.solution import ContourFit, Estimate, Gross, Pose, PseudoFit, Solution, Weak
+from pipeworkbench.recon.adjustment.solution import AdjustedStation, ContourFit, Estimate, Gross, PseudoFit, Solution, Weak
 from pipeworkbench.recon.adjustment.variances import Assessment
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.match import quality
@@ -102,8 +102,7 @@ def _estimates(linear: Linearisation, assessment: Assessment, factor: float) -> 
         sizes = {}
         for number, name in enumerate(SIZE_NAMES[type(component)], RIGID):
             if name in names:
-                unit_of = 2.0 if name in DIAMETERS else (180 / np.pi if name == "angle_deg" else 1.0)
-                sizes[name] = unit_of * float(np.sqrt(max(cofactor[number, number], 0.0)))
+                sizes[name] = unit_of(name) * float(np.sqrt(max(cofactor[number, number], 0.0)))
         estimates[component.id] = Estimate(np.sqrt(np.maximum(np.diag(position), 0.0)), position, direction, sizes)
     return estimates
 
@@ -134,7 +133,7 @@ def _components(outcome: Outcome, estimates: dict[str, Estimate], settings: Adju
     return tuple(result)
 
 
-def _poses(linear: Linearisation, assessment: Assessment, factor: float) -> dict[str, Pose]:
+def _poses(linear: Linearisation, assessment: Assessment, factor: float) -> dict[str, AdjustedStation]:
     state = linear.state
     poses = {}
     for number, station in enumerate(state.problem.stations):
@@ -144,9 +143,8 @@ def _poses(linear: Linearisation, assessment: Assessment, factor: float) -> dict
         for place, frame in enumerate(linear.unknowns.frames):
             if frame.name == station.name and not frame.camera:
                 rows = np.arange(RIGID) + RIGID * place
-                scale = np.repeat([1.0, 1 / FRAME_LEVER], 3)
-                covariance = factor * assessment.covariance.border[np.ix_(rows, rows)] * np.outer(scale, scale)
-        poses[station.name] = Pose(state.poses[number], cameras, covariance)
+                covariance = factor * assessment.covariance.border[np.ix_(rows, rows)] / np.outer(FRAME_UNITS, FRAME_UNITS)
+        poses[station.name] = AdjustedStation(state.poses[number], cameras, covariance)
     return poses
 
 
@@ -239,7 +237,7 @@ def _warnings(linear: Linearisation, undetermined: dict[str, str]) -> list[str]:
     texts += [
         f"station {frame.name}: none of its edges belongs to a component; nothing but what was known before says where it is"
         for frame in linear.unknowns.frames
-        if not frame.camera and not linear.groups.found[np.isin(linear.groups.view, list(frame.views))].any()
+        if not frame.camera and not linear.groups.found[frame.of(linear.groups.view)].any()
     ]
     for view in linear.state.views:
         edges = view.edges

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from pipeworkbench.pipeline import AnyComponent, Pipe
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.camera import Array, Camera
-from pipeworkbench.recon.contour import CIRCLE, Contour, CurveSamples, contour_of_shapes, curves_of
+from pipeworkbench.recon.contour import Contour, CurveSamples, contour_of_shapes, curves_of
 from pipeworkbench.recon.shapes import Shapes
 
 COARSE = 33  # points per curve with which its length in the image is measured
@@ -26,6 +26,7 @@ LATERAL_PX = 2.0  # half of the distance of samples
 BENT = float(np.cos(np.radians(20)))  # between neighbouring samples
 ALIKE = float(np.cos(np.radians(20)))  # directions of edges that are taken for each other
 TINY = 1e-9
+CIRCLES = ("face", "back")  # contours that are closed, of those that are observed
 # of flanges what no standard fixes, or what sits between two faces, measures nothing
 NOT_OBSERVED = ("neck", "hub end", "raised face")
 
@@ -35,7 +36,7 @@ class Samples:
     """The samples of one image, n in number, in g groups: each a contour of a component.
 
     wanted (c,) says which components it sees; curve, parameter, owner (n,) where the samples are; group (n,) ascends;
-    group_owner (g,); group_part (g,) the contours' names; group_side (g,) their numbers among curves of the component;
+    group_owner (g,); group_part (g,) the contours' names; group_curve (g,) their numbers among curves of the component;
     pattern (n, 2): how errors change along a contour: from -1 to 1 along lines and bends (and 0), with cosine and sine around circles;
     circle (g,) tells these apart; spacing (g,) px between samples.
     """
@@ -88,11 +89,12 @@ def samples_of(camera: Camera, components: Sequence[AnyComponent], shapes: Shape
     kept = (rank % step[curve] == 0) & (count[curve] // step[curve] >= LEAST_SAMPLES)
     kept |= _is_part_of_dish(contour)
     contour = contour[kept]
-    contour = contour[np.argsort(_whole(contour), kind="stable")]
-    numbers, first, group = np.unique(_whole(contour), return_index=True, return_inverse=True)
+    whole = _whole(contour)
+    order = np.argsort(whole, kind="stable")
+    contour = contour[order]
+    numbers, first, group = np.unique(whole[order], return_index=True, return_inverse=True)
     part = np.array(contour.names, dtype=str)[numbers] if len(numbers) else np.zeros(0, str)
-    kinds = curves_of(shapes.of(wanted), camera.projection_centre).kind
-    circle = kinds[numbers] == CIRCLE
+    circle = np.isin(part, CIRCLES)
     return Samples(
         wanted,
         contour.curve,

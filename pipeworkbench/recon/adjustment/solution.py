@@ -75,7 +75,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, eq=False)
-class Pose:
+class AdjustedStation:
     """An adjusted station: where its level frame lies (4, 4), its cameras in that frame, and the pose's covariance (6, 6) in mm and rad."""
 
     frame_from_level: Array
@@ -122,7 +122,7 @@ class Solution:
 
     components: tuple[AnyComponent, ...]
     estimates: dict[str, Estimate]
-    stations: dict[str, Pose]
+    stations: dict[str, AdjustedStation]
     sigma0: float
     sigma_image: float
     redundancy: float

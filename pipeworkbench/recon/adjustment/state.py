@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from pipeworkbench.pipeline import AnyComponent, Elbow, Pipe
-from pipeworkbench.recon.adjustment.charts import POSITION, SIZE_NAMES, bends, chart_of, moved, normalised
+from pipeworkbench.recon.adjustment.charts import POSITION, RIGID, SIZE_NAMES, bends, chart_of, moved, normalised
 from pipeworkbench.recon.adjustment.conditions import has_standard_size, with_pipe_ends
-from pipeworkbench.recon.adjustment.normal_equations import FRAME_LEVER, Frame, Unknowns, unknowns_of
+from pipeworkbench.recon.adjustment.normal_equations import FRAME_UNITS, Frame, Unknowns, unknowns_of
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.vectors import as_vector, nearest_on_line, unit
@@ -117,7 +117,7 @@ class State:
         cameras, poses, frames = list(self.cameras), list(self.poses), list(self.frames)
         for number, frame in enumerate(self.frames):
             start = unknowns.frame_start[number]
-            shift, turn = step[start : start + 3], step[start + 3 : start + 6] / FRAME_LEVER
+            shift, turn = np.split(step[start : start + RIGID] / FRAME_UNITS, 2)
             motion = np.eye(4)
             motion[:3, :3] = Rotation.from_rotvec(turn).as_matrix()
             motion[:3, 3] = frame.origin + shift - motion[:3, :3] @ frame.origin

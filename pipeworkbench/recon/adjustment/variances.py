@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pipeworkbench.recon.adjustment.charts import MOTION, RIGID
 from pipeworkbench.recon.adjustment.conditions import FREE_SIGMA
 from pipeworkbench.recon.adjustment.linearisation import Linearisation, Variances
-from pipeworkbench.recon.adjustment.normal_equations import Covariance, covariance, frame_motion
+from pipeworkbench.recon.adjustment.normal_equations import Covariance, covariance
 from pipeworkbench.recon.adjustment.observations import reduced
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.camera import Array
@@ -135,9 +135,9 @@ def _with_frames(linear: Linearisation, cofactors: Covariance, seen: Array) -> A
     unknowns, groups = linear.unknowns, linear.groups
     result = seen.copy()
     for number, frame in enumerate(unknowns.frames):
-        mine = np.flatnonzero(np.isin(groups.view, list(frame.views)))
+        mine = frame.of(groups.view)
         place = np.arange(RIGID) + (unknowns.frame_start[number] - unknowns.own)
-        transform = frame_motion(frame, unknowns.reference[groups.owner[mine]])
+        transform = unknowns.frame_motions(frame, groups.owner[mine])
         own = cofactors.border[np.ix_(place, place)]
         between = cofactors.between(unknowns, groups.owner[mine], place)
         crossed = between @ np.swapaxes(transform, 1, 2)

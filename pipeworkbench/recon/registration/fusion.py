@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeworkbench.pipeline import SHORTEST_GAP, AnyComponent, Cap, Flange, Joint, Pipe, Pipeline, Reducer, StationPose, moved
+from pipeworkbench.pipeline import SHORTEST_GAP, AnyComponent, Cap, Flange, Joint, Pipe, Pipeline, Reducer, StationPose, free_id, moved
 from pipeworkbench.recon.accuracy import level_of_accuracy
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.ends import SIGMA_FACTOR
@@ -69,7 +69,7 @@ def merge(pipelines: Sequence[Pipeline], poses: Sequence[Pose], settings: Fusion
     used: set[str] = set()
     for rows in sorted(groups, key=lambda rows: int(rows[0])):
         for component, own in _fused(seen, rows, settings):
-            name = _free_id(component.id, used)
+            name = free_id(component.id, used)
             used.add(name)
             fused.append(_attributed(replace(component, id=name), seen, own))
             members.append(own)
@@ -101,11 +101,6 @@ def _seen(pipelines: Sequence[Pipeline], poses: Sequence[Pose]) -> _Seen:
     station = np.repeat(np.arange(len(pipelines)), [len(pipeline.components) for pipeline in pipelines])
     names = tuple(component.id for pipeline in pipelines for component in pipeline.components)
     return _Seen(tuple(components), in_frame([landmarks_of(pipeline) for pipeline in pipelines], poses), station, names)
-
-
-def _free_id(name: str, used: set[str]) -> str:
-    """Return an id that is not used: the component's own, or that with the first number from 2 on that is free."""
-    return name if name not in used else next(new for number in range(2, len(used) + 3) if (new := f"{name}.{number}") not in used)
 
 
 def _fused(seen: _Seen, rows: NDArray[np.intp], settings: FusionSettings) -> list[tuple[AnyComponent, NDArray[np.intp]]]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.registration.observations import Observations, distances, jacobians, residuals
 from pipeworkbench.recon.registration.poses import Pose, rotated, rotated_by_quaternion, tangents
-from pipeworkbench.recon.registration.settings import AdjustmentSettings
+from pipeworkbench.recon.registration.settings import NetworkSettings
 
 HUBER_ITERATIONS = 5
 MEDIAN_OF_SQUARES = 0.82  # of chi squared over its degrees of freedom, for three and four of them
@@ -54,7 +54,7 @@ def adjust_network(
     observations: Observations,
     poses: Sequence[Pose],
     fixed: int,
-    settings: AdjustmentSettings | None = None,
+    settings: NetworkSettings | None = None,
     middles: Array | None = None,
     level: NDArray[np.bool_] | None = None,
 ) -> NetworkSolution:
@@ -67,13 +67,13 @@ def adjust_network(
         Starting values of s stations.
     fixed : int
         The row of the station that stays.
-    settings : AdjustmentSettings, optional
+    settings : NetworkSettings, optional
     middles : (s, 3) array, optional
         A point among each station's components, mm: where the step that ends the iteration is measured.
     level : (s,) array, optional
         Which stations' inclination sensors are observed, if the settings say how well; all by default.
     """
-    settings = settings or AdjustmentSettings()
+    settings = settings or NetworkSettings()
     quaternions = np.array([pose.quaternion for pose in poses])
     translations = np.array([pose.translation for pose in poses])
     middles = np.zeros_like(translations) if middles is None else middles
@@ -114,7 +114,7 @@ def adjust_network(
     )
 
 
-def _weights(now: Array, observations: Observations, settings: AdjustmentSettings, *, huber: bool) -> Array:
+def _weights(now: Array, observations: Observations, settings: NetworkSettings, *, huber: bool) -> Array:
     """Return robust weights (m,) from the normalised distances of pairs; their scale comes from all of them."""
     distance = np.sqrt((now**2).sum(1) / observations.counts)
     counted = distance[observations.share > 0]

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from pipeworkbench.pipeline import Matrix, Vector
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.vectors import rounded
+from pipeworkbench.recon.vectors import cross_matrices, rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,13 +74,6 @@ class Pose:
 def headed(heading: float) -> Array:
     """Return the rotation (3, 3) about the vertical by an angle in rad."""
     return np.asarray(Rotation.from_euler("z", heading).as_matrix())
-
-
-def cross_matrices(vectors: Array) -> Array:
-    """Return the matrices (..., 3, 3) whose product with another vector is the cross product with it."""
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    zero = np.zeros_like(x)
-    return np.stack([np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)], -2)
 
 
 def rotated(quaternions: Array, points: Array) -> Array:

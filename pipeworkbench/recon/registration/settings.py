@@ -58,7 +58,7 @@ class SearchSettings:
 
 
 @dataclass(frozen=True)
-class AdjustmentSettings:
+class NetworkSettings:
     """Tunables of the adjustment of all stations' poses (Sect. 8.3).
 
     ``tukey`` and ``huber`` are factors of the robust standard deviation of the pairs' normalised distances; ``tilt_deg`` is the standard
@@ -102,5 +102,5 @@ class RegistrationSettings:
     """Tunables of each step."""
 
     search: SearchSettings = field(default_factory=SearchSettings)
-    adjustment: AdjustmentSettings = field(default_factory=AdjustmentSettings)
+    adjustment: NetworkSettings = field(default_factory=NetworkSettings)
     fusion: FusionSettings = field(default_factory=FusionSettings)

@@ -21,8 +21,9 @@ from pipeworkbench.recon.registration.comparison import (
 )
 from pipeworkbench.recon.registration.hypotheses import Hypotheses, Pairs, alike, hypotheses_of
 from pipeworkbench.recon.registration.landmarks import Landmarks
-from pipeworkbench.recon.registration.poses import Pose, cross_matrices
+from pipeworkbench.recon.registration.poses import Pose
 from pipeworkbench.recon.registration.settings import SearchSettings
+from pipeworkbench.recon.vectors import cross_matrices
 
 PRIOR_DEG, PRIOR_MM = 1.0, 100.0  # how far a hypothesis may be off: keeps what its pairs do not determine where it is
 WHOLE_BONUS = 0.5  # for a pipe whose joints on both sides coincide: they fix what its axis leaves open

@@ -12,7 +12,7 @@ from synthetic import TARGET, cameras
 
 from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, by_motion
 from pipeworkbench.recon.adjustment.linearisation import Variances, linearised, sampled
-from pipeworkbench.recon.adjustment.normal_equations import FRAME_LEVER, LEAST_INFORMATION, Frame, covariance, frame_motion
+from pipeworkbench.recon.adjustment.normal_equations import FRAME_LEVER, LEAST_INFORMATION, Frame, covariance
 from pipeworkbench.recon.adjustment.observations import SYSTEMATIC
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem, StationViews
 from pipeworkbench.recon.adjustment.state import State
@@ -92,7 +92,7 @@ def dense(linear, samples, settings=SETTINGS):
             row[unknowns.columns(owner)] = rates[sample] @ unknowns.basis[owner][:, : unknowns.count[owner]]
             for start, frame in zip(unknowns.frame_start, unknowns.frames, strict=True):
                 if number in frame.views:
-                    row[start : start + RIGID] = rates[sample, :RIGID] @ frame_motion(frame, unknowns.reference[[owner]])[0]
+                    row[start : start + RIGID] = rates[sample, :RIGID] @ unknowns.frame_motions(frame, np.array([owner]))[0]
             group = before + some.group[sample]
             # all samples alike, and how it changes: along lines, by cosine and sine around circles
             row[total + group + count * np.arange(SYSTEMATIC)] = 1.0, *some.pattern[sample]
@@ -230,7 +230,7 @@ def test_distances_change_with_a_stations_pose_as_the_design_says(kind, column):
     state = State.of(problem, SETTINGS)
     unknowns = state.unknowns()
     rates = sight.seen.gain[:, None] * by_motion([component], np.zeros(len(sight), np.intp), sight.names, sight.seen.point, sight.seen.outward)
-    design = rates[:, :RIGID] @ frame_motion(unknowns.frames[0], unknowns.reference)[0]
+    design = rates[:, :RIGID] @ unknowns.frame_motions(unknowns.frames[0], np.array([0]))[0]
 
     def distances(h):
         step = np.zeros(unknowns.total)
