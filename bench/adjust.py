@@ -24,6 +24,7 @@ from simulated import Noise, errors, perturbed, plant, rig, simulated_pipeline, 
 
 from pipeworkbench.pipeline import Pipeline
 from pipeworkbench.recon.adjust import AdjustmentSettings, Problem, StationViews, adjust
+from pipeworkbench.recon.adjustment.conditions import NOBODY
 from pipeworkbench.recon.adjustment.linearisation import Variances, linearised, sampled
 from pipeworkbench.recon.adjustment.state import State
 from pipeworkbench.recon.adjustment.variances import assessed
@@ -310,7 +311,7 @@ def peer(problem: Problem) -> None:
         systematic = x[unknowns.total :].reshape(count, 3)
         distance = np.nan_to_num(np.concatenate([rows.distance for rows in now.samples]))
         image = weight * (distance - np.einsum("ni,ni->n", pattern, (systematic * deviation)[group]))
-        return np.concatenate([image, systematic.ravel(), [row.misclosure / row.sigma for row in now.rows]])
+        return np.concatenate([image, systematic.ravel(), now.observed.misclosure / now.observed.sigma])
 
     structure = _structure(start, owner, group, count)
     began = time.perf_counter()
@@ -337,10 +338,10 @@ def _structure(start, owner, group, count):
 
     # pipes end where their neighbours do: their contours move with these
     near = [{component} for component in range(len(unknowns.count))]
-    for row in start.rows:
-        involved = {component for component, _ in row.parts}
-        for component in involved:
-            near[component] |= involved
+    involved = [{body for body in bodies if body != NOBODY} for bodies in start.observed.bodies.tolist()]
+    for bodies in involved:
+        for component in bodies:
+            near[component] |= bodies
     parts = [np.concatenate([unknowns.columns(other) for other in sorted(ours)]) for ours in near]
     for component, column in enumerate(parts):
         add(np.flatnonzero(owner == component), column)
@@ -348,11 +349,11 @@ def _structure(start, owner, group, count):
     for number in range(3):
         rows += [np.arange(total), total + 3 * np.arange(count) + number]
         columns += [unknowns.total + 3 * group + number, unknowns.total + 3 * np.arange(count) + number]
-    for number, row in enumerate(start.rows):
-        for component, _ in row.parts:
+    for number, bodies in enumerate(involved):
+        for component in bodies:
             add(np.array([total + 3 * count + number]), parts[component])
     row, column = np.concatenate(rows), np.concatenate(columns)
-    shape = (total + 3 * count + len(start.rows), unknowns.total + 3 * count)
+    shape = (total + 3 * count + len(start.observed), unknowns.total + 3 * count)
     return coo_matrix((np.ones(len(row)), (row, column)), shape=shape).tocsr()
 
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pipeworkbench.pipeline import Elbow
-from pipeworkbench.recon.adjustment.charts import DIRECTION, POSITION, bends
+from pipeworkbench.recon.adjustment.charts import DIRECTION, MOTION, POSITION, bends
 from pipeworkbench.recon.adjustment.feasibility import contradictions
 from pipeworkbench.recon.adjustment.linearisation import Linearisation, Variances, linearised, sampled
 from pipeworkbench.recon.adjustment.normal_equations import covariance
@@ -82,7 +82,7 @@ def adjust(
     state = State.of(problem, settings)
     against = contradictions(state, settings)
     reasons = {one.id: NO_BEND for one in problem.components if isinstance(one, Elbow) and not bends(one)}
-    reasons |= {state.components[row].id: reason for row, reason in against.reasons.items()}
+    reasons |= {problem.components[row].id: reason for row, reason in against.reasons.items()}
     state = state.without(against.joints, {row: state.free[row] for row in against.reasons})
     samples = sampled(state, settings)
     state, more, far = _approached(state, samples, settings, progress)
@@ -221,17 +221,17 @@ def _determined(linear: Linearisation, settings: AdjustmentSettings) -> tuple[Li
     """Return the linearisation in which only what is observed may move, and for each component's id what is not."""
     reasons: dict[str, str] = {}
     # what is held in one round may have been what held others
-    for _ in range(len(linear.state.components) + 1):
-        cofactors = covariance(linear.equations)
+    for _ in range(len(linear.state.free) + 1):
+        every = np.arange(len(linear.state.free))
+        variance = np.einsum("cii->ci", covariance(linear.equations).blocks(linear.unknowns, every, every))
+        # what is not a number is not known, either
+        loose = ~(variance < settings.undetermined**2) & (np.arange(MOTION) < linear.unknowns.count[:, None])
         held: dict[int, frozenset[str]] = {}
-        for row, component in enumerate(linear.state.components):
-            variance = np.diag(cofactors.of(linear.unknowns.columns(row)))
-            loose = {name for name, value in zip(linear.unknowns.names[row], variance, strict=True) if not value < settings.undetermined**2}
-            if not loose:
-                continue
-            held[row] = linear.state.free[row] if loose & {POSITION, DIRECTION} else frozenset(loose)
-            reasons[component.id] = REASON.format(" and ".join(name.replace("_", " ") for name in sorted(loose)))
+        for row in np.flatnonzero(loose.any(axis=1)).tolist():
+            names = {name for name, is_loose in zip(linear.unknowns.names[row], loose[row], strict=False) if is_loose}
+            held[row] = linear.state.free[row] if names & {POSITION, DIRECTION} else frozenset(names)
+            reasons[linear.state.problem.components[row].id] = REASON.format(" and ".join(name.replace("_", " ") for name in sorted(names)))
         if not held:
             break
-        linear = linear.at(linear.state.without(frozenset(), held), settings)
+        linear = linear.at(linear.state.without(frozenset(), held))
     return linear, reasons

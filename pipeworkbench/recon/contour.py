@@ -16,7 +16,7 @@ That holds at a contour's cusps too.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -132,8 +132,12 @@ def contour_of_shapes(
     coarse: int = COARSE,
     *,
     steady: bool = False,
+    stride: int = 1,
 ) -> Contour:
-    """Do what :func:`contour_of` does for the surfaces of components; ``steady`` as in :func:`curves_of`."""
+    """Do what :func:`contour_of` does for the surfaces of components; ``steady`` as in :func:`curves_of`.
+
+    Where samples that are ``stride`` apart are both seen, or hidden by the same, those between them are taken to be so, too.
+    """
     curves = curves_of(shapes, camera.projection_centre, steady=steady)
     curve, parameter = _spaced(camera, curves, interval, coarse)
     seen = curves.seen_by(camera, curve, parameter)
@@ -143,11 +147,35 @@ def contour_of_shapes(
     seen = CurveSamples(*(getattr(seen, f.name)[inside] for f in fields(seen)))
     owner = curves.owner[curve]
     number = None if alternatives is None else np.asarray(alternatives, np.intp)
-    by_itself, by_others = hidden(camera.projection_centre, seen.point, shapes, owner, touching, number)
+
+    def hiding(rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+        return np.stack(hidden(camera.projection_centre, seen.point[rows], shapes, owner[rows], touching, number), axis=1)
+
+    by_itself, by_others = _sparsely(hiding, curve, stride).T
     tangent = np.column_stack([-seen.normal[:, 1], seen.normal[:, 0]])
     return Contour(
         owner, curve, parameter, seen.position, tangent, seen.normal, seen.point, seen.outward, seen.gain, by_itself, by_others, curves.names
     )
+
+
+def _sparsely(ask: Callable[[NDArray[np.intp]], NDArray[np.bool_]], curve: NDArray[np.intp], stride: int) -> NDArray[np.bool_]:
+    """Return what ``ask`` says of the rows of samples (n,) of curves, (n, k), asked of every so manieth and wherever two of these differ."""
+    count = len(curve)
+    if stride == 1 or not count:
+        return ask(np.arange(count))
+    begins = np.flatnonzero(np.diff(curve, prepend=-1))
+    ends = np.append(begins[1:], count) - 1
+    rank = np.arange(count) - np.repeat(begins, ends - begins + 1)
+    first = rank % stride == 0
+    first[ends] = True
+    rows = np.flatnonzero(first)
+    answers = ask(rows)
+    # the last that was asked before each one, and the next one
+    before = np.cumsum(first) - 1
+    same = (answers[before] == answers[np.minimum(before + 1, len(rows) - 1)]).all(axis=1) | first
+    result = answers[before]
+    result[~same] = ask(np.flatnonzero(~same))
+    return result
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,17 +8,36 @@ closed with discs: pipework is opaque.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.pipeline import HUBBED_FLANGES, AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
+from pipeworkbench.pipeline import AnyComponent
+from pipeworkbench.recon.bodies import (
+    BEND,
+    BRANCH_END,
+    CAP,
+    CORNER,
+    ELBOW,
+    END,
+    FLANGE,
+    PIPE,
+    PLATE,
+    RADIUS,
+    REDUCER,
+    SECOND,
+    START,
+    TEE,
+    THICKNESS,
+    Bodies,
+    Rows,
+)
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.vectors import unit
+from pipeworkbench.recon.vectors import dot
 
 STRAIGHT_DEG = 1e-3  # a bend by less is not a torus
 DISH = 0.25  # height over diameter of an ellipsoidal head with axes 2 : 1, as caps have it (EN 10253-2)
@@ -115,7 +134,7 @@ class Shapes:
         )
 
 
-def _rows(surfaces: S, rows: NDArray[np.bool_]) -> S:
+def _rows(surfaces: S, rows: NDArray[np.bool_] | Rows) -> S:
     """Return some of the surfaces."""
     return type(surfaces)(*(getattr(surfaces, f.name)[rows] for f in fields(surfaces)))
 
@@ -128,123 +147,158 @@ def shapes_of(components: Sequence[AnyComponent]) -> Shapes:
     InputError
         Where an elbow's ends, intersection and bend radius do not belong together.
     """
-    rows = _Rows()
-    for owner, component in enumerate(components):
-        match component:
-            case Pipe():
-                rows.add_frustum(owner, "pipe", component.start, component.end, component.outer_diameter, component.outer_diameter)
-            case Elbow():
-                rows.add_torus(owner, component)
-            case Flange():
-                rows.add_flange(owner, component)
-            case Tee():
-                rows.add_frustum(owner, "pipe", component.start, component.end, component.outer_diameter, component.outer_diameter)
-                rows.add_frustum(owner, "branch", component.intersection, component.branch_end, component.branch_diameter, component.branch_diameter)
-            case Reducer():
-                rows.add_frustum(owner, "cone", component.start, component.end, component.outer_diameter, component.end_diameter)
-            case Cap():
-                rows.add_cap(owner, component)
+    return shapes_of_bodies(Bodies.of(components))
+
+
+def shapes_of_bodies(bodies: Bodies) -> Shapes:
+    """Do what :func:`shapes_of` does for components in arrays."""
+    frustums = [*_pipes(bodies), *_flanges(bodies), *_caps(bodies)]
+    part = np.concatenate([np.full(len(some.owner), some.name, object) for some in frustums])
+    owner, start, end, radius = (np.concatenate([getattr(some, name) for some in frustums]) for name in ("owner", "start", "end", "radius"))
+    # a component's surfaces follow each other
+    order = np.argsort(owner, kind="stable")
+    owner, start, end, radius, part = owner[order], start[order], end[order], radius[order], part[order]
+    length = np.linalg.norm(end - start, axis=1)
+    axis = (end - start) / length[:, None]
+    tori = _tori(bodies)
+    first_disc, last_disc = Circles(start, axis, radius[:, 0], owner), Circles(end, axis, radius[:, 1], owner)
+    edges, edge_part = _flange_edges(bodies)
     return Shapes(
-        Frustums(*_columns(rows.frustums, (3, 3, 0, 2, 0))),
-        tuple(rows.part),
-        Tori(*_columns(rows.tori, (3, 3, 3, 0, 0, 0, 0))),
-        Circles(*_columns(rows.discs, (3, 3, 0, 0))),
-        Circles(*_columns(rows.edges, (3, 3, 0, 0))),
-        tuple(rows.edge_part),
-        len(components),
+        Frustums(start, axis, length, radius, owner),
+        tuple(part),
+        tori,
+        _together(first_disc, last_disc, *_ends_of_tori(tori)),
+        edges,
+        edge_part,
+        len(bodies),
     )
 
 
-class _Rows:
-    """The surfaces as lists of rows while they are collected."""
+class _Lateral(NamedTuple):
+    """Frustums of one kind: their components' rows (k,), both ends' centres (k, 3), radii (k, 2)."""
 
-    def __init__(self) -> None:
-        self.frustums: list[tuple[object, ...]] = []
-        self.tori: list[tuple[object, ...]] = []
-        self.discs: list[tuple[object, ...]] = []
-        self.edges: list[tuple[object, ...]] = []
-        self.part: list[str] = []
-        self.edge_part: list[str] = []
-
-    def add_frustum(self, owner: int, part: str, start: Sequence[float], end: Sequence[float], diameter: float, end_diameter: float) -> None:
-        first, last = np.array(start, float), np.array(end, float)
-        length = float(np.linalg.norm(last - first))
-        axis = (last - first) / length
-        self.frustums.append((first, axis, length, (diameter / 2, end_diameter / 2), owner))
-        self.part.append(part)
-        self.discs += [(first, axis, diameter / 2, owner), (last, axis, end_diameter / 2, owner)]
-
-    def add_torus(self, owner: int, elbow: Elbow) -> None:
-        torus = _torus_of(elbow)
-        centre, axis, first, angle, bend_radius, tube_radius = torus
-        self.tori.append((*torus, owner))
-        second = np.cross(axis, first)
-        for turn in (0.0, angle):
-            outwards = np.cos(turn) * first + np.sin(turn) * second
-            self.discs.append((centre + bend_radius * outwards, np.cross(axis, outwards), tube_radius, owner))
-
-    def add_flange(self, owner: int, flange: Flange) -> None:
-        face, axis = np.array(flange.face, float), -unit(flange.axis)
-        height = flange.raised_face_height if flange.raised_face_diameter else None
-        front, back = face + (height or 0.0) * axis, face + flange.C * axis
-        self.add_frustum(owner, "rim", tuple(front), tuple(back), flange.D, flange.D)
-        for centre, name in ((front, "face"), (back, "back")):
-            self.edges.append((centre, axis, flange.D / 2, owner))
-            self.edge_part.append(name)
-        if height and flange.raised_face_diameter:
-            self.add_frustum(owner, "raised face", tuple(face), tuple(front), flange.raised_face_diameter, flange.raised_face_diameter)
-            self.edges.append((face, axis, flange.raised_face_diameter / 2, owner))
-            self.edge_part.append("raised face")
-        if flange.length > flange.C:
-            self._add_neck(owner, flange, back, face + flange.length * axis, axis)
-
-    def _add_neck(self, owner: int, flange: Flange, back: Array, end: Array, axis: Array) -> None:
-        """Add what stands on the plate: a hub, straight to its end, or a cone that tapers to the pipe."""
-        root = min(flange.neck_diameter or flange.outer_diameter, flange.D)
-        if flange.flange_type in HUBBED_FLANGES:
-            self.add_frustum(owner, "neck", tuple(back), tuple(end), root, root)
-            self.edges.append((end, axis, root / 2, owner))
-            self.edge_part.append("hub end")
-            return
-        straight = min(flange.neck_straight or 0.0, (flange.length - flange.C) / 2)
-        self.add_frustum(owner, "neck", tuple(back), tuple(end - straight * axis), root, flange.outer_diameter)
-        if straight:
-            self.add_frustum(owner, "neck", tuple(end - straight * axis), tuple(end), flange.outer_diameter, flange.outer_diameter)
-
-    def add_cap(self, owner: int, cap: Cap) -> None:
-        start, axis, diameter = np.array(cap.start, float), unit(cap.axis), cap.outer_diameter
-        dish = min(DISH * diameter, cap.length)
-        if cap.length > dish:
-            self.add_frustum(owner, "pipe", tuple(start), tuple(start + (cap.length - dish) * axis), diameter, diameter)
-        turn = np.linspace(0, np.pi / 2, DISH_STEPS + 1)
-        along, width = cap.length - dish * (1 - np.sin(turn)), diameter * np.cos(turn)
-        for step in range(DISH_STEPS):
-            here, there = tuple(start + along[step] * axis), tuple(start + along[step + 1] * axis)
-            self.add_frustum(owner, "cap", here, there, float(width[step]), float(width[step + 1]))
+    name: str
+    owner: Rows
+    start: Array
+    end: Array
+    radius: Array
 
 
-def _torus_of(elbow: Elbow) -> tuple[Array, Array, Array, float, float, float]:
-    """Return centre, axis, first direction, angle, bend radius and tube radius of an elbow."""
-    corner = np.array(elbow.intersection, float)
-    come, go = corner - np.array(elbow.start, float), np.array(elbow.end, float) - corner
-    if min(np.linalg.norm(come), np.linalg.norm(go)) == 0:
-        raise InputError(elbow.id, "intersection", "coincides with an end of the elbow", "give the point where both axes meet")
-    come, go = unit(come), unit(go)
+def _lateral(name: str, owner: Rows, start: Array, end: Array, first: Array, last: Array) -> _Lateral:
+    return _Lateral(name, owner, start, end, np.stack([first, last], axis=1))
+
+
+def _pipes(bodies: Bodies) -> Iterator[_Lateral]:
+    """Yield what is round from end to end: pipes, both parts of tees, reducers."""
+    rows = bodies.rows(PIPE, TEE)
+    radius = bodies.sizes[rows, RADIUS]
+    yield _lateral("pipe", rows, bodies.points[rows, START], bodies.points[rows, END], radius, radius)
+    rows = bodies.rows(TEE)
+    radius = bodies.sizes[rows, SECOND]
+    yield _lateral("branch", rows, bodies.points[rows, CORNER], bodies.points[rows, BRANCH_END], radius, radius)
+    rows = bodies.rows(REDUCER)
+    yield _lateral("cone", rows, bodies.points[rows, START], bodies.points[rows, END], bodies.sizes[rows, RADIUS], bodies.sizes[rows, SECOND])
+
+
+def _flanges(bodies: Bodies) -> Iterator[_Lateral]:
+    """Yield the rims of plates, raised faces, and what stands on plates: a hub, straight to its end, or a cone that tapers to the pipe."""
+    rows = bodies.rows(FLANGE)
+    front, back = _plates(bodies, rows)
+    plate = bodies.sizes[rows, PLATE]
+    yield _lateral("rim", rows, front, back, plate, plate)
+    raised = bodies.details.raised[rows, 1] > 0
+    radius = bodies.details.raised[rows[raised], 0]
+    yield _lateral("raised face", rows[raised], bodies.points[rows[raised], START], front[raised], radius, radius)
+    necked = bodies.details.beyond[rows] > 0
+    rows, back = rows[necked], back[necked]
+    axis, tube, beyond = -bodies.axis[rows], bodies.sizes[rows, RADIUS], bodies.details.beyond[rows]
+    root, hubbed = neck_radius(bodies, rows), bodies.details.hubbed[rows]
+    straight = np.where(hubbed, 0.0, np.minimum(bodies.details.straight[rows], beyond / 2))
+    narrowed = back + (beyond - straight)[:, None] * axis
+    yield _lateral("neck", rows, back, narrowed, root, np.where(hubbed, root, tube))
+    there = straight > 0
+    yield _lateral("neck", rows[there], narrowed[there], (back + beyond[:, None] * axis)[there], tube[there], tube[there])
+
+
+def neck_radius(bodies: Bodies, flanges: Rows) -> Array:
+    """Return the radii (m,), mm, of the necks of flanges (m,) where they leave their plates."""
+    given = bodies.details.neck[flanges]
+    return np.minimum(np.where(np.isnan(given), bodies.sizes[flanges, RADIUS], given), bodies.sizes[flanges, PLATE])
+
+
+def _plates(bodies: Bodies, flanges: Rows) -> tuple[Array, Array]:
+    """Return the centres (m, 3) of both ends of flanges' rims."""
+    face, axis = bodies.points[flanges, START], -bodies.axis[flanges]
+    return face + bodies.details.raised[flanges, 1, None] * axis, face + bodies.sizes[flanges, THICKNESS, None] * axis
+
+
+def _flange_edges(bodies: Bodies) -> tuple[Circles, tuple[str, ...]]:
+    """Return the sharp edges of flanges and their names, each component's together."""
+    rows = bodies.rows(FLANGE)
+    front, back = _plates(bodies, rows)
+    raised = bodies.details.raised[rows, 1] > 0
+    hubs = bodies.details.hubbed[rows] & (bodies.details.beyond[rows] > 0)
+    end = bodies.points[rows, START] - bodies.flange_length(rows)[:, None] * bodies.axis[rows]
+    plate = bodies.sizes[rows, PLATE]
+    found = (
+        ("face", rows, front, plate),
+        ("back", rows, back, plate),
+        ("raised face", rows[raised], bodies.points[rows[raised], START], bodies.details.raised[rows[raised], 0]),
+        ("hub end", rows[hubs], end[hubs], neck_radius(bodies, rows[hubs])),
+    )
+    circles = _together(*(Circles(centre, -bodies.axis[owner], radius, owner) for _, owner, centre, radius in found))
+    order = np.argsort(circles.owner, kind="stable")
+    names = np.concatenate([np.full(len(owner), name, object) for name, owner, _, _ in found])
+    return _rows(circles, order), tuple(names[order])
+
+
+def _caps(bodies: Bodies) -> Iterator[_Lateral]:
+    """Yield the straight parts of caps, and their dishes as cones one behind the other."""
+    rows = bodies.rows(CAP)
+    start, axis, radius, length = bodies.points[rows, START], bodies.axis[rows], bodies.sizes[rows, RADIUS], bodies.details.beyond[rows]
+    dish = np.minimum(2 * DISH * radius, length)
+    long = length > dish
+    yield _lateral("pipe", rows[long], start[long], (start + (length - dish)[:, None] * axis)[long], radius[long], radius[long])
+    turn = np.linspace(0, np.pi / 2, DISH_STEPS + 1)
+    along, width = length[:, None] - dish[:, None] * (1 - np.sin(turn)), radius[:, None] * np.cos(turn)
+    places = start[:, None] + along[:, :, None] * axis[:, None]
+    for step in range(DISH_STEPS):
+        yield _lateral("cap", rows, places[:, step], places[:, step + 1], width[:, step], width[:, step + 1])
+
+
+def _tori(bodies: Bodies) -> Tori:
+    """Return the bent parts of elbows; their angles are those between their axes."""
+    rows = bodies.rows(ELBOW)
+    corner = bodies.points[rows, CORNER]
+    come, go = corner - bodies.points[rows, START], bodies.points[rows, END] - corner
+    lengths = np.linalg.norm(come, axis=1), np.linalg.norm(go, axis=1)
+    _refuse(bodies, rows[np.minimum(*lengths) == 0], "intersection", "coincides with an end of the elbow", "give the point where both axes meet")
+    come, go = come / lengths[0][:, None], go / lengths[1][:, None]
     normal = np.cross(come, go)
-    angle = float(np.arctan2(np.linalg.norm(normal), come @ go))
-    if angle < np.radians(STRAIGHT_DEG):
-        raise InputError(elbow.id, "angle_deg", "the elbow does not bend", "leave it out: the pipes meet in a line")
+    sine = np.linalg.norm(normal, axis=1)
+    angle = np.arctan2(sine, dot(come, go))
+    _refuse(bodies, rows[angle < np.radians(STRAIGHT_DEG)], "angle_deg", "the elbow does not bend", "leave it out: the pipes meet in a line")
     # perpendicular to the incoming axis in the bend's plane; anti-parallel axes have no plane
-    if angle > np.pi - np.radians(STRAIGHT_DEG):
-        raise InputError(elbow.id, "angle_deg", "the elbow turns back on itself", "give both halves as elbows of their own")
-    normal /= np.linalg.norm(normal)
+    turned_back = angle > np.pi - np.radians(STRAIGHT_DEG)
+    _refuse(bodies, rows[turned_back], "angle_deg", "the elbow turns back on itself", "give both halves as elbows of their own")
+    normal /= sine[:, None]
     inwards = np.cross(normal, come)
     # where both axes' tangent lengths agree with the bend radius, the centre lies beside the start
-    centre = np.array(elbow.start, float) + elbow.bend_radius * inwards
-    return centre, normal, -inwards, angle, elbow.bend_radius, elbow.outer_diameter / 2
+    bend, tube = bodies.sizes[rows, BEND], bodies.sizes[rows, RADIUS]
+    return Tori(bodies.points[rows, START] + bend[:, None] * inwards, normal, -inwards, angle, bend, tube, rows)
 
 
-def _columns(rows: list[tuple[object, ...]], sizes: Sequence[int]) -> list[Any]:
-    """Return rows as arrays, one per column; (k, size) where the size is not 0; the last one, the owner, as integers."""
-    columns = [np.array([row[i] for row in rows], float).reshape((len(rows), size) if size else (len(rows),)) for i, size in enumerate(sizes)]
-    return [*columns[:-1], columns[-1].astype(np.intp)]
+def _refuse(bodies: Bodies, rows: Rows, key: str, problem: str, remedy: str) -> None:
+    if len(rows):
+        raise InputError(bodies.given[rows[0]].id, key, problem, remedy)
+
+
+def _ends_of_tori(tori: Tori) -> Iterator[Circles]:
+    second = tori.second
+    for turn in (np.zeros(len(tori)), tori.angle):
+        outwards = np.cos(turn)[:, None] * tori.first + np.sin(turn)[:, None] * second
+        yield Circles(tori.centre + tori.bend_radius[:, None] * outwards, np.cross(tori.axis, outwards), tori.tube_radius, tori.owner)
+
+
+def _together(*circles: Circles) -> Circles:
+    return Circles(*(np.concatenate([getattr(some, f.name) for some in circles]) for f in fields(Circles)))

@@ -69,3 +69,13 @@ def angle_between(one: Array, other: Array) -> float:
     """Return the angle between two directions (3,), 0 to pi rad; sharp for small angles too."""
     normal = cross(one, other)
     return math.atan2(math.sqrt(normal @ normal), one @ other)
+
+
+def units(vectors: Array) -> Array:
+    """Return the unit vectors of the same directions (..., 3)."""
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+def dot(one: Array, other: Array) -> Array:
+    """Return the products (n,) of vectors (n, 2) or (n, 3), one by one."""
+    return np.asarray(np.einsum("ni,ni->n", one, other))

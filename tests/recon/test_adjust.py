@@ -8,13 +8,13 @@ import pytest
 from parts import DIAMETER, attached, bend, gaps, part, run, straight, with_edges
 from scipy.spatial.transform import Rotation
 from simulated import Noise, errors, perturbed, rig, simulated_pipeline, simulated_views
+from single import changed
 from synthetic import TARGET, cameras
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import Joint, Pipe
 from pipeworkbench.recon.accuracy import level_of_accuracy
 from pipeworkbench.recon.adjust import AdjustmentSettings, Problem, StationViews, adjust
-from pipeworkbench.recon.adjustment.charts import moved as changed
 from pipeworkbench.recon.cylinder import perpendicular_axes
 from pipeworkbench.recon.vectors import unit
 

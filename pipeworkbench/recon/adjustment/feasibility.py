@@ -3,16 +3,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix, identity
 from scipy.sparse.linalg import splu
 
-from pipeworkbench.recon.adjustment.conditions import Row, rows_of
-from pipeworkbench.recon.adjustment.normal_equations import pseudo_rows
+from pipeworkbench.recon.adjustment.conditions import NOBODY, Conditions, Observed
+from pipeworkbench.recon.adjustment.normal_equations import design
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.adjustment.state import State
+from pipeworkbench.recon.camera import Array
 
 TOLERANCE_MM, TOLERANCE_RAD = 0.01, 2e-5  # what an exact condition may be off
 LEVER = 1000.0  # mm; a direction's misclosure counts by what it is at this distance
@@ -34,34 +35,36 @@ def contradictions(state: State, settings: AdjustmentSettings) -> Contradictions
     The conditions alone are adjusted, with everything else where it is: what is left over contradicts.
     """
     nothing = Contradictions(frozenset(), {})
-    fixed = {component.id for component, names in zip(state.components, state.free, strict=True) if not names} | set(state.problem.held)
-    if not fixed or not state.joints:
+    if not state.joints or (state.conditions.free.all() and not state.problem.held):
         return nothing
-    sizes = {row: names for row, names in enumerate(state.free) if names}
+    conditions = state.conditions.without_alignment()
     here, rest = state, np.inf
-    rows: list[Row] = []
+    exact = _exact(conditions, here)
     for _ in range(STEPS):
-        rows = [row for row in rows_of(state.problem, here.components, sizes, here.joints, replace(settings, aligned=False)) if row.exact]
-        off = np.array([abs(row.misclosure) / _tolerance(row, settings) for row in rows])
+        off = np.abs(exact.misclosure) / _tolerances(exact, settings)
         if not len(off) or off.max() <= 1 or off.max() > SLOW * rest:
             break
         rest = off.max()
         unknowns = here.unknowns()
-        matrix, _, misclosure = pseudo_rows(rows, unknowns)
-        scale = np.array([LEVER if row.sigma == settings.turn_sigma else 1.0 for row in rows])
+        matrix = design(exact, unknowns)
+        scale = np.where(exact.sigma == settings.turn_sigma, LEVER, 1.0)
         weighted = matrix.multiply(scale[:, None] ** 2).tocsc()
         normal = csc_matrix(matrix.T @ weighted + GIVEN * identity(unknowns.total))
-        here = here.moved(unknowns, splu(normal).solve(weighted.T @ misclosure) if unknowns.total else np.zeros(0))
-    broken = [row for row in rows if abs(row.misclosure) > _tolerance(row, settings)]
-    if not broken:
-        return nothing
+        here = here.moved(unknowns, splu(normal).solve(weighted.T @ exact.misclosure) if unknowns.total else np.zeros(0))
+        exact = _exact(conditions, here)
+    broken = exact[np.abs(exact.misclosure) > _tolerances(exact, settings)]
     reasons: dict[int, str] = {}
-    for row in broken:
-        for component, _ in row.parts:
-            if state.free[component]:
-                reasons.setdefault(component, f"{row.what} cannot be fulfilled together with what is fixed (off by {abs(row.misclosure):.3g})")
-    return Contradictions(frozenset(row.joint for row in broken if row.joint is not None), reasons)
+    for what, bodies, misclosure in zip(broken.what, broken.bodies, broken.misclosure, strict=True):
+        for body in bodies[bodies != NOBODY]:
+            if state.free[body]:
+                reasons.setdefault(int(body), f"{what} cannot be fulfilled together with what is fixed (off by {abs(misclosure):.3g})")
+    return Contradictions(frozenset(broken.joint.tolist()), reasons)
 
 
-def _tolerance(row: Row, settings: AdjustmentSettings) -> float:
-    return TOLERANCE_RAD if row.sigma == settings.turn_sigma else TOLERANCE_MM
+def _exact(conditions: Conditions, state: State) -> Observed:
+    observed = conditions.at(state.bodies)
+    return observed[observed.exact]
+
+
+def _tolerances(exact: Observed, settings: AdjustmentSettings) -> Array:
+    return np.where(exact.sigma == settings.turn_sigma, TOLERANCE_RAD, TOLERANCE_MM)

@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pipeworkbench.recon.adjustment.charts import MOTION
-from pipeworkbench.recon.adjustment.conditions import Row, rows_of
+from pipeworkbench.recon.adjustment.conditions import Observed
 from pipeworkbench.recon.adjustment.normal_equations import NormalEquations, Unknowns, normal_equations
-from pipeworkbench.recon.adjustment.observations import FAR, Groups, Reduced, SampleRows, joined, observe, reduced
+from pipeworkbench.recon.adjustment.observations import FAR, Groups, Reduced, SampleRows, joined, matched_edges, observe, reduced
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.adjustment.sampling import Samples, samples_of
 from pipeworkbench.recon.adjustment.state import State
-from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.shapes import shapes_of
+from pipeworkbench.recon.camera import Array, Camera
+from pipeworkbench.recon.shapes import shapes_of_bodies
+from pipeworkbench.recon.views import View
 
 WORKERS = 2  # images at a time; more wait for each other's interpreter lock
 CERTAIN = 1e12  # 1 / px^2; the precision of an error that is not there
@@ -59,7 +60,7 @@ class Linearisation:
     complete: Groups
     systems: Reduced
     samples: tuple[SampleRows, ...]
-    rows: tuple[Row, ...]
+    observed: Observed
     unknowns: Unknowns
     equations: NormalEquations
     reach: float
@@ -67,18 +68,18 @@ class Linearisation:
     @property
     def cost(self) -> float:
         """What the iteration makes least: weighted squares, with what an edge costs that is not found."""
-        pseudo = sum((row.misclosure / row.sigma) ** 2 for row in self.rows)
-        return float(self.systems.normal[:, MOTION, MOTION].sum() + FAR**2 * self.groups.missing.sum() + pseudo)
+        return float(self.systems.normal[:, MOTION, MOTION].sum() + FAR**2 * self.groups.missing.sum() + self.observed.squares.sum())
 
-    def at(self, state: State, settings: AdjustmentSettings) -> Linearisation:
+    def at(self, state: State) -> Linearisation:
         """Return the same observations for a state in which other parameters are unknowns."""
-        rows, unknowns = _rows(state, settings), state.unknowns()
-        return replace(self, state=state, rows=rows, unknowns=unknowns, equations=normal_equations(self.groups, self.systems, rows, unknowns))
+        observed, unknowns = state.conditions.at(state.bodies), state.unknowns()
+        equations = normal_equations(self.groups, self.systems, observed, unknowns)
+        return replace(self, state=state, observed=observed, unknowns=unknowns, equations=equations)
 
     def weighted(self, variances: Variances, settings: AdjustmentSettings) -> Linearisation:
         """Return the same observations with other variances of the contours' systematic errors."""
         systems = reduced(self.groups, variances.precision(self.groups, settings))
-        equations = normal_equations(self.groups, systems, self.rows, self.unknowns)
+        equations = normal_equations(self.groups, systems, self.observed, self.unknowns)
         return replace(self, systems=systems, equations=equations)
 
     def squares(self, step: Array) -> Array:
@@ -104,9 +105,21 @@ class Linearisation:
 
 def sampled(state: State, settings: AdjustmentSettings) -> tuple[Samples, ...]:
     """Return the samples of all images at a state."""
-    shapes = shapes_of(state.components)
+    shapes = shapes_of_bodies(state.bodies)
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
-        return tuple(pool.map(lambda camera: samples_of(camera, state.components, shapes, settings), state.cameras))
+        return tuple(pool.map(lambda camera: samples_of(camera, state.bodies, shapes, settings), state.cameras))
+
+
+def image_distances(state: State, samples: Sequence[Samples], reach: float, settings: AdjustmentSettings) -> Array:
+    """Return the distances in px of the samples of all images to their edges, NaN where there is none in reach."""
+    shapes = shapes_of_bodies(state.bodies)
+
+    def one(view: View, camera: Camera, some: Samples) -> Array:
+        seen = some.seen_by(camera, shapes)
+        return matched_edges(view, seen.position, seen.normal, some, reach, settings).distance
+
+    with ThreadPoolExecutor(max_workers=WORKERS) as pool:
+        return np.concatenate([np.zeros(0), *pool.map(one, state.views, state.cameras, samples)])
 
 
 def linearised(
@@ -118,23 +131,17 @@ def linearised(
     matched: Sequence[SampleRows] | None = None,
 ) -> Linearisation:
     """Observe everything at a state; ``reach`` is the search range in px. What is ``matched`` already stays so."""
-    shapes = shapes_of(state.components)
-    components = list(state.components)
+    shapes = shapes_of_bodies(state.bodies)
 
     def one(number: int) -> tuple[Groups, SampleRows]:
         known = matched[number] if matched else None
-        return observe(state.views[number], state.cameras[number], number, samples[number], shapes, components, reach, settings, known)
+        return observe(state.views[number], state.cameras[number], number, samples[number], shapes, state.bodies, reach, settings, known)
 
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
         parts = list(pool.map(one, range(len(state.views))))
     complete = joined([part for part, _ in parts])
     groups = complete if variances.left_out is None else complete.without(variances.left_out)
     systems = reduced(groups, variances.precision(groups, settings))
-    rows, unknowns = _rows(state, settings), state.unknowns()
-    equations = normal_equations(groups, systems, rows, unknowns)
-    return Linearisation(state, groups, complete, systems, tuple(rows for _, rows in parts), rows, unknowns, equations, reach)
-
-
-def _rows(state: State, settings: AdjustmentSettings) -> tuple[Row, ...]:
-    sizes = {row: names for row, names in enumerate(state.free) if names}
-    return tuple(rows_of(state.problem, state.components, sizes, state.joints, settings))
+    observed, unknowns = state.conditions.at(state.bodies), state.unknowns()
+    equations = normal_equations(groups, systems, observed, unknowns)
+    return Linearisation(state, groups, complete, systems, tuple(rows for _, rows in parts), observed, unknowns, equations, reach)

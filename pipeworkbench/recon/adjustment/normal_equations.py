@@ -7,6 +7,7 @@ pipeline; stations and cameras border it. Covariances come block by block, the b
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -17,8 +18,9 @@ from scipy.sparse import coo_matrix, csc_matrix, diags
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
-from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, Chart
-from pipeworkbench.recon.adjustment.conditions import Row
+from pipeworkbench.pipeline import AnyComponent
+from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, parameter_names
+from pipeworkbench.recon.adjustment.conditions import NOBODY, Observed
 from pipeworkbench.recon.adjustment.observations import Groups, Reduced
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.vectors import cross_matrices
@@ -104,20 +106,33 @@ class Unknowns:
         return transform
 
 
-def unknowns_of(charts: Sequence[Chart], free: Sequence[frozenset[str]], frames: Sequence[Frame]) -> Unknowns:
-    """Return the unknowns of components of whose charts the parameters in ``free`` may change, and of frames."""
-    basis = np.zeros((len(charts), MOTION, MOTION))
-    count = np.zeros(len(charts), np.intp)
-    names: list[tuple[str, ...]] = []
-    for row, (chart, wanted) in enumerate(zip(charts, free, strict=True)):
-        columns = [column for column, name in enumerate(chart.names) if name in wanted]
-        names.append(tuple(chart.names[column] for column in columns))
-        basis[row, :, : len(columns)] = chart.basis[:, columns]
-        count[row] = len(columns)
-    own = int(count.sum())
-    reference = np.array([chart.reference for chart in charts]).reshape(-1, 3)
-    frame_start = own + RIGID * np.arange(len(frames))
-    return Unknowns(basis, tuple(names), count, np.cumsum(count) - count, reference, tuple(frames), frame_start, own + RIGID * len(frames))
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Which of the components' parameters are unknowns: ``names`` and column (c, 9) of their charts, -1 where there are fewer."""
+
+    names: tuple[tuple[str, ...], ...]
+    column: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, components: Sequence[AnyComponent], free: Sequence[frozenset[str]]) -> Layout:
+        """Return the unknowns of components of which the parameters named in ``free`` may change."""
+        column = np.full((len(components), MOTION), -1)
+        names: list[tuple[str, ...]] = []
+        for row, (component, wanted) in enumerate(zip(components, free, strict=True)):
+            every = parameter_names(component) if wanted else ()
+            columns = [number for number, name in enumerate(every) if name in wanted]
+            column[row, : len(columns)] = columns
+            names.append(tuple(every[number] for number in columns))
+        return cls(tuple(names), column)
+
+    def unknowns(self, reference: Array, basis: Array, frames: Sequence[Frame]) -> Unknowns:
+        """Return the unknowns of components with charts (:func:`.charts.charts`), and of frames."""
+        there = self.column >= 0
+        chosen = np.where(there[:, None, :], np.take_along_axis(basis, np.maximum(self.column, 0)[:, None, :], axis=2), 0.0)
+        count = there.sum(axis=1)
+        own = int(count.sum())
+        frame_start = own + RIGID * np.arange(len(frames))
+        return Unknowns(chosen, self.names, count, np.cumsum(count) - count, reference, tuple(frames), frame_start, own + RIGID * len(frames))
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +158,7 @@ def _factor(matrix: csc_matrix) -> SuperLU:
     return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
-def normal_equations(groups: Groups, systems: Reduced, rows: Sequence[Row], unknowns: Unknowns) -> NormalEquations:
+def normal_equations(groups: Groups, systems: Reduced, observed: Observed, unknowns: Unknowns) -> NormalEquations:
     """Sum up the normal equations of image contours and pseudo-observations."""
     count = len(unknowns.count)
     blocks, right = np.zeros((count, MOTION, MOTION)), np.zeros((count, MOTION))
@@ -166,11 +181,11 @@ def normal_equations(groups: Groups, systems: Reduced, rows: Sequence[Row], unkn
             line.append(some[0])
             along.append(some[1])
             value.append(some[2])
-    pseudo, weight, misclosure = pseudo_rows(rows, unknowns)
-    weighted = diags(weight) @ pseudo
+    pseudo = design(observed, unknowns)
+    weighted = diags(observed.sigma**-2.0) @ pseudo
     matrix = coo_matrix((np.concatenate(value), (np.concatenate(line), np.concatenate(along))), shape=(unknowns.total,) * 2)
     matrix = csc_matrix(matrix) + pseudo.T @ weighted + diags(np.full(unknowns.total, LEAST_INFORMATION), format="csc")
-    return NormalEquations(csc_matrix(matrix), vector + weighted.T @ misclosure, unknowns)
+    return NormalEquations(csc_matrix(matrix), vector + weighted.T @ observed.misclosure, unknowns)
 
 
 def _of_frame(
@@ -211,19 +226,14 @@ def _of_frame(
         yield np.repeat(there_too, RIGID), np.tile(places, RIGID), block.T.ravel()
 
 
-def pseudo_rows(rows: Sequence[Row], unknowns: Unknowns) -> tuple[csc_matrix, Array, Array]:
-    """Return the rows (r, u) by the unknowns, their weights and misclosures (r,)."""
-    parts = [(number, component, derivative) for number, row in enumerate(rows) for component, derivative in row.parts]
-    shape = (len(rows), unknowns.total)
-    weight = np.array([row.sigma for row in rows]) ** -2.0
-    misclosure = np.array([row.misclosure for row in rows])
-    if not parts:
-        return csc_matrix(shape), weight, misclosure
-    number, component = np.array([part[0] for part in parts]), np.array([part[1] for part in parts])
-    values = np.einsum("ri,rij->rj", np.array([part[2] for part in parts]), unknowns.basis[component])
+def design(observed: Observed, unknowns: Unknowns) -> csc_matrix:
+    """Return how pseudo-observations change with the unknowns: (r, u)."""
+    number, side = np.nonzero(observed.bodies != NOBODY)
+    component = observed.bodies[number, side]
+    values = np.einsum("ri,rij->rj", observed.derivative[number, side], unknowns.basis[component])
     there, places = unknowns.places(component)
-    matrix = coo_matrix((values[there], (np.repeat(number, unknowns.count[component]), places)), shape=shape)
-    return csc_matrix(matrix), weight, misclosure
+    shape = (len(observed), unknowns.total)
+    return csc_matrix(coo_matrix((values[there], (np.repeat(number, unknowns.count[component]), places)), shape=shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,16 +258,27 @@ class Covariance:
         rows = self.place[numbers]
         return self.parts[self.part_of_unknown[numbers[0]]][1][np.ix_(rows, rows)]
 
+    def blocks(self, unknowns: Unknowns, one: NDArray[np.intp], other: NDArray[np.intp]) -> Array:
+        """Return the cofactors (m, 9, 9) between the unknowns of components (m,) and (m,), zeros where these have fewer or are of different parts."""
+        column = np.arange(MOTION)
+        result = np.zeros((len(one), MOTION, MOTION))
+        known = np.flatnonzero((unknowns.count[one] > 0) & (unknowns.count[other] > 0))
+        first, second = unknowns.start[one[known]], unknowns.start[other[known]]
+        label = np.where(self.part_of_unknown[first] == self.part_of_unknown[second], self.part_of_unknown[first], -1)
+        for part in np.unique(label[label >= 0]):
+            ours = label == part
+            # a component's unknowns follow each other in their part
+            line, along = (np.minimum(self.place[begin[ours], None] + column, len(self.parts[part][0]) - 1) for begin in (first, second))
+            result[known[ours]] = self.parts[part][1][line[:, :, None], along[:, None, :]]
+        there = (column < unknowns.count[one, None])[:, :, None] & (column < unknowns.count[other, None])[:, None, :]
+        return np.where(there, result, 0.0)
+
     def between(self, unknowns: Unknowns, components: NDArray[np.intp], places: NDArray[np.intp]) -> Array:
         """Return the cofactors (m, 9, p) between the motions of components (m,) and some of the frames' unknowns (p,)."""
         there, numbers = unknowns.places(components)
         padded = np.zeros((len(components), MOTION, len(places)))
         padded[there] = self.with_border[numbers][:, places]
         return np.asarray(unknowns.basis[components] @ padded)
-
-    def same_part(self, numbers: NDArray[np.intp]) -> bool:
-        """Tell whether unknowns are of one connected part."""
-        return len(np.unique(self.part_of_unknown[numbers])) <= 1
 
 
 def covariance(equations: NormalEquations) -> Covariance:
@@ -268,24 +289,36 @@ def covariance(equations: NormalEquations) -> Covariance:
     count, label = connected_components(inner + _together(equations.unknowns), directed=False) if own else (0, np.zeros(0, np.intp))
     order = np.argsort(label, kind="stable")
     bounds = np.concatenate([[0], np.cumsum(np.bincount(label, minlength=count))])
-    schur = matrix[own:, own:].toarray()
-    inverses, shares, numbers = [], [], []
-    for part in range(count):
-        rows = order[bounds[part] : bounds[part + 1]]
-        inverse = _inverse(inner[rows][:, rows].tocsc())
-        inverses.append(inverse)
-        numbers.append(rows)
-        share = inverse @ side[rows]
-        shares.append(share)
-        if total > own:
-            schur -= side[rows].T @ share
-    border = np.linalg.inv(schur) if total > own else np.zeros((0, 0))
-    place, with_border = np.zeros(own, np.intp), np.zeros((own, total - own))
+    place = np.zeros(own, np.intp)
+    place[order] = np.arange(own) - np.repeat(bounds[:-1], np.diff(bounds))
+    numbers = [order[begin:end] for begin, end in itertools.pairwise(bounds)]
+    inverses = [_inverse(block) for block in _blocks(inner.tocoo(), label, place, np.diff(bounds))]
+    if total == own:
+        return Covariance(tuple(zip(numbers, inverses, strict=True)), label, place, np.zeros((0, 0)), np.zeros((own, 0)))
+    shares = [inverse @ side[rows] for rows, inverse in zip(numbers, inverses, strict=True)]
+    schur = matrix[own:, own:].toarray() - sum(side[rows].T @ share for rows, share in zip(numbers, shares, strict=True))
+    border = np.linalg.inv(schur)
+    with_border = np.zeros((own, total - own))
     for rows, share in zip(numbers, shares, strict=True):
-        place[rows] = np.arange(len(rows))
         with_border[rows] = -share @ border
     parts = tuple((rows, inverse + share @ border @ share.T) for rows, inverse, share in zip(numbers, inverses, shares, strict=True))
     return Covariance(parts, label, place, border, with_border)
+
+
+def _blocks(matrix: coo_matrix, label: NDArray[np.intp], place: NDArray[np.intp], sizes: NDArray[np.intp]) -> Iterator[csc_matrix | Array]:
+    """Yield the blocks of a matrix that falls apart into parts, dense ones where they are small."""
+    of_part = label[matrix.row]
+    order = np.argsort(of_part, kind="stable")
+    row, column, value = place[matrix.row][order], place[matrix.col][order], matrix.data[order]
+    bounds = np.concatenate([[0], np.cumsum(np.bincount(of_part, minlength=len(sizes)))])
+    for size, begin, end in zip(sizes.tolist(), bounds[:-1], bounds[1:], strict=True):
+        entries = (value[begin:end], (row[begin:end], column[begin:end]))
+        if size > LARGEST_DENSE:
+            yield csc_matrix(entries, shape=(size, size))
+        else:
+            block = np.zeros((size, size))
+            block[entries[1]] = entries[0]
+            yield block
 
 
 def _together(unknowns: Unknowns) -> csc_matrix:
@@ -295,11 +328,11 @@ def _together(unknowns: Unknowns) -> csc_matrix:
     return csc_matrix((np.ones(own), (first, np.arange(own))), shape=(own, own))
 
 
-def _inverse(matrix: csc_matrix) -> Array:
-    """Return the inverse (p, p) of a sparse positive definite matrix."""
-    if matrix.shape[0] <= LARGEST_DENSE:
-        return np.asarray(cho_solve(cho_factor(matrix.toarray()), np.eye(matrix.shape[0])))
-    factor = _factor(matrix)
+def _inverse(matrix: csc_matrix | Array) -> Array:
+    """Return the inverse (p, p) of a positive definite matrix, dense or sparse."""
     size = matrix.shape[0]
+    if isinstance(matrix, np.ndarray):
+        return np.asarray(cho_solve(cho_factor(matrix), np.eye(size)))
+    factor = _factor(matrix)
     columns = [factor.solve(np.eye(size, min(COLUMNS, size - first), -first)) for first in range(0, size, COLUMNS)]
     return np.concatenate(columns, axis=1)

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from pipeworkbench.pipeline import AnyComponent
 from pipeworkbench.recon.adjustment.charts import MOTION, by_motion
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.adjustment.sampling import Samples
+from pipeworkbench.recon.bodies import Bodies
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.shapes import Shapes
@@ -106,7 +106,7 @@ def observe(
     number: int,
     samples: Samples,
     shapes: Shapes,
-    components: list[AnyComponent],
+    bodies: Bodies,
     reach: float,
     settings: AdjustmentSettings,
     matched: SampleRows | None = None,
@@ -117,9 +117,9 @@ def observe(
     """
     seen = samples.seen_by(camera, shapes)
     part = samples.group_part[samples.group]
-    motion = seen.gain[:, None] * by_motion(components, samples.owner, part, seen.point, seen.outward)
+    motion = seen.gain[:, None] * by_motion(bodies, samples.owner, part, seen.point, seen.outward)
     if matched is None:
-        rows = _matched(view, seen.position, seen.normal, samples, reach, settings)
+        rows = matched_edges(view, seen.position, seen.normal, samples, reach, settings)
     else:
         offset = view.edges.position[matched.edge] - seen.position if len(view.edges) else np.zeros_like(seen.position)
         distance = np.where(matched.edge >= 0, np.einsum("ni,ni->n", offset, seen.normal), np.nan)
@@ -158,7 +158,7 @@ def joined(parts: Sequence[Groups]) -> Groups:
     return Groups(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
-def _matched(view: View, position: Array, normal: Array, samples: Samples, reach: float, settings: AdjustmentSettings) -> SampleRows:
+def matched_edges(view: View, position: Array, normal: Array, samples: Samples, reach: float, settings: AdjustmentSettings) -> SampleRows:
     """Return the nearest edges whose brighter side is where it is along most of the contour, with their weights."""
     edges = view.edges
     count = len(samples.group_owner)

@@ -11,7 +11,8 @@ import numpy as np
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import AnyComponent, Joint
-from pipeworkbench.recon.adjustment.charts import DIRECTION, POSITION, SIZE_NAMES
+from pipeworkbench.recon.adjustment.charts import DIRECTION, POSITION
+from pipeworkbench.recon.bodies import SIZE_NAMES
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.views import View
 

@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import AnyComponent, Pipe
 from pipeworkbench.recon.accuracy import level_of_accuracy
-from pipeworkbench.recon.adjustment.charts import RIGID, SIZE_NAMES, unit_of
-from pipeworkbench.recon.adjustment.conditions import FREE_SIGMA
-from pipeworkbench.recon.adjustment.linearisation import Linearisation, Variances, linearised
+from pipeworkbench.recon.adjustment.charts import RIGID
+from pipeworkbench.recon.adjustment.linearisation import Linearisation, Variances, image_distances
 from pipeworkbench.recon.adjustment.normal_equations import FRAME_UNITS
 from pipeworkbench.recon.adjustment.observations import MAD
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem
 from pipeworkbench.recon.adjustment.sampling import Samples
 from pipeworkbench.recon.adjustment.solution import AdjustedStation, ContourFit, Estimate, Gross, PseudoFit, Solution, Weak
 from pipeworkbench.recon.adjustment.variances import Assessment
+from pipeworkbench.recon.bodies import SIZE_NAMES, unit_of
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.match import quality
 from pipeworkbench.recon.vectors import as_vector, rounded, unit
@@ -48,12 +48,10 @@ def solution_of(outcome: Outcome, settings: AdjustmentSettings) -> Solution:
     """Return the solution."""
     linear, assessment = outcome.last, outcome.assessment
     image, pseudo = assessment.image_factor, assessment.pseudo_factor(linear)
-    soft = np.array([row.sigma < FREE_SIGMA / 2 for row in linear.rows], bool)
-    observations = float(linear.groups.effective.sum()) + int(soft.sum())
+    telling = linear.observed.telling
+    observations = float(linear.groups.effective.sum()) + int(telling.sum())
     redundancy = max(observations - linear.unknowns.total, 0.0)
-    squares = float(assessment.squares.sum()) + sum(
-        (row.misclosure / row.sigma) ** 2 for row, counts in zip(linear.rows, soft, strict=True) if counts
-    )
+    squares = float(assessment.squares.sum() + linear.observed.squares[telling].sum())
     sigma0 = float(np.sqrt(squares / redundancy)) if redundancy > 0 else float("nan")
     # few residuals that happen to be small do not make the result better known
     factor = max(image, 1.0)
@@ -110,9 +108,8 @@ def _estimates(linear: Linearisation, assessment: Assessment, factor: float) -> 
 def _components(outcome: Outcome, estimates: dict[str, Estimate], settings: AdjustmentSettings) -> tuple[AnyComponent, ...]:
     """Return the components with their accuracy; pipes end exactly where their neighbours begin."""
     state = outcome.last.state.with_ends(exact=True)
-    fit = linearised(state, outcome.samples, QUALITY_RANGE, outcome.variances, settings)
     owner = np.concatenate([samples.owner for samples in outcome.samples]) if outcome.samples else np.zeros(0, np.intp)
-    distance = np.concatenate([rows.distance for rows in fit.samples]) if fit.samples else np.zeros(0)
+    distance = image_distances(state, outcome.samples, QUALITY_RANGE, settings)
     result: list[AnyComponent] = []
     for row, (component, given) in enumerate(zip(state.components, outcome.problem.components, strict=True)):
         estimate = estimates.get(component.id)
@@ -180,10 +177,9 @@ def _contours(outcome: Outcome) -> tuple[ContourFit, ...]:
 
 
 def _pseudo(linear: Linearisation, assessment: Assessment) -> tuple[PseudoFit, ...]:
-    return tuple(
-        PseudoFit(row.what, -row.misclosure, row.sigma, float(redundancy), float(w))
-        for row, redundancy, w in zip(linear.rows, assessment.pseudo_redundancy, assessment.pseudo_w, strict=True)
-    )
+    observed = linear.observed
+    numbers = (-observed.misclosure, observed.sigma, assessment.pseudo_redundancy, assessment.pseudo_w)
+    return tuple(PseudoFit(*one) for one in zip(observed.what, *(column.tolist() for column in numbers), strict=True))
 
 
 def _gross(outcome: Outcome, contours: tuple[ContourFit, ...], pseudo: tuple[PseudoFit, ...], settings: AdjustmentSettings) -> tuple[Gross, ...]:

@@ -4,21 +4,22 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from pipeworkbench.pipeline import AnyComponent, Pipe
+from pipeworkbench.pipeline import Pipe
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
+from pipeworkbench.recon.bodies import Bodies
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.contour import Contour, CurveSamples, contour_of_shapes, curves_of
 from pipeworkbench.recon.shapes import Shapes
 
 COARSE = 33  # points per curve with which its length in the image is measured
 AXIS_POINTS = 9  # of a component, with which it is decided whether an image shows it
+STRIDE = 3  # samples of which one is looked at whether it is seen, where nothing changes
 MARGIN_PX = 200.0  # around an image: a component's axis may leave it before its contours do
 LEAST_SAMPLES = 6  # along a contour
 RESOLUTION_PX = 3.0  # edges nearer than this are one: about twice the detector's smoothing
@@ -73,14 +74,14 @@ class Samples:
         return curves_of(shapes.of(self.wanted), camera.projection_centre, steady=True).seen_by(camera, self.curve, self.parameter)
 
 
-def samples_of(camera: Camera, components: Sequence[AnyComponent], shapes: Shapes, settings: AdjustmentSettings) -> Samples:
+def samples_of(camera: Camera, bodies: Bodies, shapes: Shapes, settings: AdjustmentSettings) -> Samples:
     """Return the samples of all contours that an image shows and nothing hides."""
-    wanted = shown(camera, components)
-    contour = contour_of_shapes(camera, shapes.of(wanted), settings.spacing, coarse=COARSE, steady=True)
+    wanted = shown(camera, bodies)
+    contour = contour_of_shapes(camera, shapes.of(wanted), settings.spacing, coarse=COARSE, steady=True, stride=STRIDE)
     contour = contour[contour.visible & ~_sharply_bent(contour)]
     contour = contour[~_beside_others(contour)]
     observed = ~np.isin(contour.names, NOT_OBSERVED) if contour.names else np.zeros(0, bool)
-    contour = contour[observed[contour.curve] & ~_in_gaps(components, contour.component, contour.parameter)]
+    contour = contour[observed[contour.curve] & ~_in_gaps(bodies, contour.component, contour.parameter)]
     curve = contour.curve
     count = np.bincount(curve, minlength=curve.max(initial=-1) + 1)
     # long contours are thinned evenly
@@ -162,21 +163,18 @@ def _beside_others(contour: Contour) -> NDArray[np.bool_]:
     return beside
 
 
-def shown(camera: Camera, components: Sequence[AnyComponent]) -> NDArray[np.bool_]:
+def shown(camera: Camera, bodies: Bodies) -> NDArray[np.bool_]:
     """Return which components (c,) an image may show: some point of their axes lies in it or near it."""
-    if not components:
-        return np.zeros(0, bool)
-    ends = np.array([(component.ports[0].point, component.ports[-1].point) for component in components])
+    first, last = bodies.first_and_last()
     place = np.linspace(0, 1, AXIS_POINTS)[:, None]
-    points = ends[:, :1] + place * (ends[:, 1:] - ends[:, :1])
-    pixels = camera.project(points.reshape(-1, 3))
-    return np.asarray(camera.sees(pixels, -MARGIN_PX).reshape(len(components), AXIS_POINTS).any(axis=1))
+    pixels = camera.project((first[:, None] + place * (last - first)[:, None]).reshape(-1, 3))
+    return np.asarray(camera.sees(pixels, -MARGIN_PX).reshape(len(bodies), AXIS_POINTS).any(axis=1))
 
 
-def _in_gaps(components: Sequence[AnyComponent], owner: NDArray[np.intp], parameter: Array) -> NDArray[np.bool_]:
+def _in_gaps(bodies: Bodies, owner: NDArray[np.intp], parameter: Array) -> NDArray[np.bool_]:
     """Return which samples (n,) lie where a pipe was bridged: no image shows its edges there."""
     bridged = np.zeros(len(owner), bool)
-    for row, component in enumerate(components):
+    for row, component in enumerate(bodies.components):
         if isinstance(component, Pipe) and component.gaps:
             ours = np.flatnonzero(owner == row)
             at = parameter[ours] * component.length

@@ -7,20 +7,20 @@ from there. So all places along the axis are compared.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from pipeworkbench.pipeline import AnyComponent, Flange
+from pipeworkbench.pipeline import Flange
 from pipeworkbench.recon.adjustment.charts import POSITION
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.adjustment.sampling import NOT_OBSERVED
 from pipeworkbench.recon.adjustment.state import State
+from pipeworkbench.recon.bodies import FLANGE, START
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.contour import contour_of
 from pipeworkbench.recon.match import match
-from pipeworkbench.recon.vectors import as_vector, unit
+from pipeworkbench.recon.vectors import as_vector
 
 STEP_MM = 0.5
 REACH_PX, SCATTER_PX = 3.0, 1.0  # of an edge from a contour that it may be, and how fast it counts less
@@ -33,45 +33,40 @@ def slid(state: State, settings: AdjustmentSettings) -> State:
 
     Flanges that meet go together, as far apart as the gasket is thick: one alone looks the same where the other one is.
     """
-    components: list[AnyComponent] = list(state.components)
+    points, changed = state.bodies.points.copy(), state.bodies.changed.copy()
+    shifts = np.arange(-settings.slide, settings.slide + STEP_MM / 2, STEP_MM)
+    axis = state.bodies.axis
     for row, pair in _pairs(state).items():
-        flange = components[row]
-        assert isinstance(flange, Flange)  # noqa: S101  # only flanges were collected
-        shifts = np.arange(-settings.slide, settings.slide + STEP_MM / 2, STEP_MM)
-        score = _scores(state, flange, shifts)
-        other = components[pair] if pair is not None else None
-        if isinstance(other, Flange):
+        score, gap = _scores(state, row, shifts), 0.0
+        if pair is not None:
             # the other one looks back: its shifts are against its own axis
-            gap = float(np.subtract(other.face, flange.face) @ unit(flange.axis)) - settings.gasket
-            score = score + _scores(state, other, gap - shifts)
+            gap = float((points[pair, START] - points[row, START]) @ axis[row]) - settings.gasket
+            score = score + _scores(state, pair, gap - shifts)
         if score.any():
             shift = float(shifts[np.argmax(score)])
-            components[row] = _shifted(flange, shift)
-            if pair is not None and isinstance(other, Flange):
-                components[pair] = _shifted(other, gap - shift)
-    return replace(state, components=tuple(components))
+            for flange, way in ((row, shift), (pair, gap - shift)):
+                if flange is not None:
+                    points[flange, START] += way * axis[flange]
+                    changed[flange] = True
+    return replace(state, bodies=replace(state.bodies, points=points, changed=changed))
 
 
 def _pairs(state: State) -> dict[int, int | None]:
     """Return the rows of flanges that may slide, each with that of the flange that it meets, or None; each pair comes once."""
-    number = {component.id: row for row, component in enumerate(state.components)}
+    links = state.conditions.links
     met: dict[int, int] = {}
-    for joint in (state.problem.joints[index] for index in state.joints):
-        one, other = number[joint.a], number[joint.b]
-        if joint.a_port == joint.b_port == 0 and all(isinstance(state.components[row], Flange) for row in (one, other)):
-            met |= {one: other, other: one}
-    free = {row for row, component in enumerate(state.components) if isinstance(component, Flange) and POSITION in state.free[row]}
+    for one, other in links.bodies[links.faces(state.bodies)].tolist():
+        met |= {one: other, other: one}
+    free = {row for row in state.bodies.rows(FLANGE).tolist() if POSITION in state.free[row]}
     # the gasket says where one is whose neighbour stays
     return {row: met.get(row) for row in sorted(free) if row not in met or (met[row] in free and row < met[row])}
 
 
-def _shifted(flange: Flange, shift: float) -> Flange:
-    return replace(flange, face=as_vector(np.array(flange.face) + shift * unit(flange.axis)))
-
-
-def _scores(state: State, flange: Flange, shifts: Sequence[float] | Array) -> Array:
-    """Return how many edges the contours of a flange find at shifts (s,) along its axis, by how near they are."""
-    places = [_shifted(flange, float(shift)) for shift in shifts]
+def _scores(state: State, row: int, shifts: Array) -> Array:
+    """Return how many edges the contours of a flange find at shifts (s,), mm, along its axis, by how near they are."""
+    flange, axis = state.components[row], state.bodies.axis[row]
+    assert isinstance(flange, Flange)  # noqa: S101  # only flanges slide
+    places = [replace(flange, face=as_vector(state.bodies.points[row, START] + shift * axis)) for shift in shifts]
     total = np.zeros(len(places))
     for view, camera in zip(state.views, state.cameras, strict=True):
         if not len(view.edges):

@@ -11,7 +11,7 @@ import scipy.special
 from numpy.typing import NDArray
 
 from pipeworkbench.recon.adjustment.charts import MOTION, RIGID
-from pipeworkbench.recon.adjustment.conditions import FREE_SIGMA
+from pipeworkbench.recon.adjustment.conditions import NOBODY
 from pipeworkbench.recon.adjustment.linearisation import Linearisation, Variances
 from pipeworkbench.recon.adjustment.normal_equations import Covariance, covariance
 from pipeworkbench.recon.adjustment.observations import reduced
@@ -74,22 +74,22 @@ class Assessment:
 
     def pseudo_factor(self, linear: Linearisation) -> float:
         """Return the variance factor of the soft pseudo-observations, 1 where there is next to none."""
-        soft = np.array([not row.exact and row.sigma < FREE_SIGMA / 2 for row in linear.rows], bool)
+        soft = linear.observed.soft
         redundancy = float(self.pseudo_redundancy[soft].sum())
-        square = np.array([(row.misclosure / row.sigma) ** 2 for row in linear.rows])
-        return float(square[soft].sum() / redundancy) if redundancy >= 1 else 1.0
+        return float(linear.observed.squares[soft].sum() / redundancy) if redundancy >= 1 else 1.0
 
 
-def assessed(linear: Linearisation, variances: Variances, settings: AdjustmentSettings, *, pseudo: bool = True) -> Assessment:
-    """Return the statistics of a linearisation at which the iteration has converged, those of the pseudo-observations where they are asked for."""
+def assessed(
+    linear: Linearisation, variances: Variances, settings: AdjustmentSettings, *, pseudo: bool = True, cofactors: Covariance | None = None
+) -> Assessment:
+    """Return the statistics of a linearisation at which the iteration has converged, those of the pseudo-observations where they are asked for.
+
+    The ``cofactors`` may be those that it had with slightly other variances.
+    """
     unknowns, groups = linear.unknowns, linear.groups
-    cofactors = covariance(linear.equations)
-    count = len(unknowns.count)
-    own = np.zeros((count, MOTION, MOTION))
-    for row in range(count):
-        columns = unknowns.columns(row)
-        own[row, : len(columns), : len(columns)] = cofactors.of(columns)
-    motion = unknowns.basis @ own @ np.swapaxes(unknowns.basis, 1, 2)
+    cofactors = covariance(linear.equations) if cofactors is None else cofactors
+    every = np.arange(len(unknowns.count))
+    motion = unknowns.basis @ cofactors.blocks(unknowns, every, every) @ np.swapaxes(unknowns.basis, 1, 2)
     seen = motion[groups.owner]
     if unknowns.frames:
         seen = _with_frames(linear, cofactors, seen)
@@ -114,7 +114,7 @@ def assessed(linear: Linearisation, variances: Variances, settings: AdjustmentSe
         checked = np.where(there, nominal / (nominal + others), 0.0)
     systematic[out], posterior[out] = 0.0, 0.0
     taken = np.einsum("gij,gji->g", linear.systems.normal[:, :MOTION, :MOTION], seen)
-    redundancy, pseudo_w = _of_rows(linear, cofactors) if pseudo else (np.zeros(0), np.zeros(0))
+    redundancy, pseudo_w = _of_pseudo(linear, cofactors, motion) if pseudo else (np.zeros(0), np.zeros(0))
     return Assessment(
         cofactors,
         motion,
@@ -147,25 +147,30 @@ def _with_frames(linear: Linearisation, cofactors: Covariance, seen: Array) -> A
     return result
 
 
-def _of_rows(linear: Linearisation, cofactors: Covariance) -> tuple[Array, Array]:
+def _of_pseudo(linear: Linearisation, cofactors: Covariance, motion: Array) -> tuple[Array, Array]:
     """Return redundancy numbers and standardised residuals of the pseudo-observations."""
-    unknowns = linear.unknowns
-    redundancy, w = np.zeros(len(linear.rows)), np.full(len(linear.rows), np.nan)
-    for number, row in enumerate(linear.rows):
-        columns = np.concatenate([unknowns.columns(component) for component, _ in row.parts])
-        if not len(columns) or not cofactors.same_part(columns):
-            continue
-        design = np.concatenate([derivative @ unknowns.basis[component][:, : unknowns.count[component]] for component, derivative in row.parts])
-        redundancy[number] = 1 - float(design @ cofactors.of(columns) @ design) / row.sigma**2
-        if redundancy[number] > LEAST_PSEUDO_REDUNDANCY and row.sigma < FREE_SIGMA / 2:
-            w[number] = -row.misclosure / (row.sigma * np.sqrt(redundancy[number]))
+    unknowns, observed = linear.unknowns, linear.observed
+    one, other = np.maximum(observed.bodies, 0).T
+    first, second = np.swapaxes(observed.derivative, 0, 1)
+    between = unknowns.basis[one] @ cofactors.blocks(unknowns, one, other) @ np.swapaxes(unknowns.basis[other], 1, 2)
+    known = np.einsum("ri,rij,rj->r", first, motion[one], first) + np.einsum("ri,rij,rj->r", second, motion[other], second)
+    known += 2 * np.einsum("ri,rij,rj->r", first, between, second)
+    # what is of components that stay has none
+    moving = ((observed.bodies != NOBODY) & (unknowns.count[np.maximum(observed.bodies, 0)] > 0)).any(axis=1)
+    redundancy = np.where(moving, 1 - known / observed.sigma**2, 0.0)
+    checked = (redundancy > LEAST_PSEUDO_REDUNDANCY) & observed.telling
+    with np.errstate(invalid="ignore", divide="ignore"):
+        w = np.where(checked, -observed.misclosure / (observed.sigma * np.sqrt(redundancy)), np.nan)
     return redundancy, w
 
 
 def estimated(linear: Linearisation, variances: Variances, settings: AdjustmentSettings) -> Variances:
     """Return the variances that go with the residuals of a linearisation, edges and weights of its samples as they are."""
+    cofactors = covariance(linear.equations)
     for _ in range(ROUNDS):
-        better = _better(linear, assessed(linear, variances, settings, pseudo=False), variances, settings)
+        # how sure the components are changes less than what their contours weigh, and the caller asks again
+        assessment = assessed(linear, variances, settings, pseudo=False, cofactors=cofactors)
+        better = _better(linear, assessment, variances, settings)
         same = near(better, variances)
         variances, linear = better, linear.weighted(better, settings)
         if same:
@@ -220,10 +225,9 @@ def gross_contours(linear: Linearisation, assessment: Assessment, settings: Adju
     None where what is said of the component itself, such as its size, is beyond the limit: that is never left out, and draws all its contours
     away from their edges.
     """
+    observed = linear.observed
     contradicted = np.zeros(len(linear.unknowns.count), bool)
-    for row, value in zip(linear.rows, assessment.pseudo_w, strict=True):
-        if not row.exact and len(row.parts) == 1 and abs(value) > settings.snooping:
-            contradicted[row.parts[0][0]] = True
+    contradicted[observed.bodies[~observed.exact & (observed.bodies[:, 1] == NOBODY) & (np.abs(assessment.pseudo_w) > settings.snooping), 0]] = True
     w = np.where(linear.groups.effective > 0, np.abs(np.nan_to_num(assessment.w)), 0.0)
     suspicious = np.flatnonzero((w > settings.snooping) & ~contradicted[linear.groups.owner] & (assessment.checked > LEAST_REDUNDANCY))
     order = suspicious[np.lexsort((-w[suspicious], linear.groups.owner[suspicious]))]

@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 from parts import KINDS, PARAMETERS, Sight, bend, in_pose, part, plate, richardson, straight, turned
 from scipy.spatial.transform import Rotation
+from single import changed as moved
+from single import chart_of, normalised, port_of, rates_of
 from synthetic import cameras
 
 from pipeworkbench.pipeline import Elbow
-from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, SIZE_NAMES, by_motion, chart_of, moved, normalised, port_of
+from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, by_motion
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings
 from pipeworkbench.recon.adjustment.sampling import samples_of
+from pipeworkbench.recon.bodies import SIZE_NAMES, Bodies
 from pipeworkbench.recon.shapes import shapes_of
 from pipeworkbench.recon.vectors import angle_between, unit
 
@@ -29,8 +32,7 @@ def component_of(kind, seed):
 
 def design_of(sight, component):
     """Return by how much (n, k), px, the samples' distances grow with each parameter."""
-    rates = by_motion([component], np.zeros(len(sight), np.intp), sight.names, sight.seen.point, sight.seen.outward)
-    return sight.seen.gain[:, None] * rates @ chart_of(component).basis
+    return sight.seen.gain[:, None] * rates_of(component, sight) @ chart_of(component).basis
 
 
 def points_of(component):
@@ -83,7 +85,10 @@ def test_images_determine_all_parameters_but_what_no_contour_shows(kind):
 def test_samples_of_many_components_are_like_those_of_each():
     components = [component_of(kind, seed) for seed, kind in enumerate(KINDS)]
     sights = [Sight(CAMERAS[0], component) for component in components]
-    alone = [by_motion([one], np.zeros(len(s), np.intp), s.names, s.seen.point, s.seen.outward) for one, s in zip(components, sights, strict=True)]
+    alone = [
+        by_motion(Bodies.of([one]), np.zeros(len(s), np.intp), s.names, s.seen.point, s.seen.outward)
+        for one, s in zip(components, sights, strict=True)
+    ]
     order = np.random.default_rng(1).permutation(sum(map(len, sights)))
     owner, names, point, outward = (
         np.concatenate(values)[order]
@@ -94,7 +99,7 @@ def test_samples_of_many_components_are_like_those_of_each():
             [s.seen.outward for s in sights],
         )
     )
-    together = by_motion(components, owner, names, point, outward)
+    together = by_motion(Bodies.of(components), owner, names, point, outward)
     assert together == pytest.approx(np.concatenate(alone)[order], abs=1e-12)
 
 
@@ -103,7 +108,7 @@ def test_samples_stay_on_a_flange_that_turns_a_little_also_where_its_axis_is_lev
     """Samples are bound to edges: they must not leap around the rim between two iterations."""
     flange = turned(plate(), Rotation.from_euler("xyz", turn).as_matrix())
     first, second = (moved(flange, np.array([0, 0, 0, *way, 0, 0, 0])) for way in ((1e-4, -3e-4, 2e-4), (-3e-4, 2e-4, -1e-4)))
-    samples = samples_of(CAMERAS[0], [first], shapes_of([first]), AdjustmentSettings())
+    samples = samples_of(CAMERAS[0], Bodies.of([first]), shapes_of([first]), AdjustmentSettings())
     here, there = (samples.seen_by(CAMERAS[0], shapes_of([one])).position for one in (first, second))
     # what is turned by 0.7 mrad and is 110 mm wide moves by 0.1 mm, which are 0.05 px
     assert len(samples) > 10

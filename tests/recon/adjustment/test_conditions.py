@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 from parts import BRANCH, DIAMETER, attached, bend, cone, dish, in_pose, plate, richardson, straight, tee
 from scipy.spatial.transform import Rotation
+from single import Row, port_of, rows_of, with_pipe_ends
+from single import changed as moved
 from synthetic import TARGET
 
 from pipeworkbench.pipeline import Elbow, Joint, Pipe
-from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, SIZE_NAMES, moved, port_of
-from pipeworkbench.recon.adjustment.conditions import FREE_SIGMA, Row, rows_of, with_pipe_ends
+from pipeworkbench.recon.adjustment.charts import MOTION, RIGID
+from pipeworkbench.recon.adjustment.conditions import FREE_SIGMA
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem
+from pipeworkbench.recon.bodies import SIZE_NAMES
 from pipeworkbench.recon.cylinder import perpendicular_axes
 from pipeworkbench.recon.vectors import unit
 

@@ -8,6 +8,7 @@ import pytest
 from parts import Sight, in_pose, part, plate, richardson, run
 from scipy.spatial.transform import Rotation
 from simulated import Noise, simulated_views
+from single import rates_of, rows_as_such
 from synthetic import TARGET, cameras
 
 from pipeworkbench.recon.adjustment.charts import MOTION, RIGID, by_motion
@@ -81,11 +82,11 @@ def dense(linear, samples, settings=SETTINGS):
         matrix[:] += weight * np.outer(row, row)
         right[:] += weight * distance * row
 
-    shapes, components = shapes_of(state.components), list(state.components)
+    shapes = shapes_of(state.components)
     before = 0
     for number, (camera, some, rows) in enumerate(zip(state.cameras, samples, linear.samples, strict=True)):
         seen = some.seen_by(camera, shapes)
-        rates = seen.gain[:, None] * by_motion(components, some.owner, some.group_part[some.group], seen.point, seen.outward)
+        rates = seen.gain[:, None] * by_motion(state.bodies, some.owner, some.group_part[some.group], seen.point, seen.outward)
         for sample in np.flatnonzero(rows.weight > 0):
             row = np.zeros(size)
             owner = some.owner[sample]
@@ -100,7 +101,7 @@ def dense(linear, samples, settings=SETTINGS):
         before += len(some.group_owner)
     errors = Variances().precision(groups, settings)
     matrix[range(total, size), range(total, size)] += errors.T.ravel()
-    for condition in linear.rows:
+    for condition in rows_as_such(linear.observed):
         row = np.zeros(size)
         for owner, derivative in condition.parts:
             row[unknowns.columns(owner)] += derivative @ unknowns.basis[owner][:, : unknowns.count[owner]]
@@ -174,8 +175,18 @@ def test_covariances_are_blocks_of_the_dense_inverse(seen, freedom):
         assert_same(found.of(columns), columns, columns)
     # of components that a joint binds, also what is between them
     pair = np.concatenate([unknowns.columns(0), unknowns.columns(1)])
-    assert found.same_part(pair)
     assert_same(found.of(pair), pair, pair)
+    every, one, other = np.arange(len(COMPONENTS)), np.array([0, 0, 1]), np.array([1, 6, 0])
+    for rows, columns in ((every, every), (one, other)):
+        for block, row, column in zip(found.blocks(unknowns, rows, columns), rows, columns, strict=True):
+            first, second = unknowns.columns(row), unknowns.columns(column)
+            assert not block[len(first) :].any()
+            assert not block[:, len(second) :].any()
+            if 6 not in {row, column} or row == column:
+                assert_same(block[: len(first), : len(second)], first, second)
+            else:
+                # nothing binds them, but for a camera that both are seen by
+                assert not block.any()
     frames = np.arange(own, unknowns.total)
     assert_same(found.border, frames, frames)
     assert_same(found.with_border, np.arange(own), frames)
@@ -202,7 +213,7 @@ def test_pipelines_without_a_joint_between_them_are_parts_of_their_own(seen):
     linear, _ = linear_of(problem_of(seen, "no frame"))
     found = covariance(linear.equations)
     assert len(found.parts) == 2
-    assert not found.same_part(np.concatenate([linear.unknowns.columns(0), linear.unknowns.columns(6)]))
+    assert found.part_of_unknown[linear.unknowns.columns(0)[0]] != found.part_of_unknown[linear.unknowns.columns(6)[0]]
 
 
 def test_size_that_nothing_observes_has_a_variance_of_its_own():
@@ -229,7 +240,7 @@ def test_distances_change_with_a_stations_pose_as_the_design_says(kind, column):
     problem = Problem((component,), (StationViews("S", (_view(camera),), free=True, **ANYWHERE),))
     state = State.of(problem, SETTINGS)
     unknowns = state.unknowns()
-    rates = sight.seen.gain[:, None] * by_motion([component], np.zeros(len(sight), np.intp), sight.names, sight.seen.point, sight.seen.outward)
+    rates = sight.seen.gain[:, None] * rates_of(component, sight)
     design = rates[:, :RIGID] @ unknowns.frame_motions(unknowns.frames[0], np.array([0]))[0]
 
     def distances(h):

@@ -64,7 +64,7 @@ def test_redundancy_numbers_sum_to_observations_minus_unknowns(usual, sizes, fre
     before = LEAST_INFORMATION * np.trace(covariance)
     if free:
         before += np.diag(covariance)[-6:] @ np.repeat([1.0, 1.0], 3)
-    observations = linear.groups.effective.sum() + len(linear.rows)
+    observations = linear.groups.effective.sum() + len(linear.observed)
     total = found.redundancy.sum() + found.pseudo_redundancy.sum()
     assert total == pytest.approx(observations - linear.unknowns.total + before, abs=5e-3)  # some 30 conditions, each to 1e-4
 
