@@ -101,22 +101,10 @@ def adjust(
     first, more = _determined(linearised(state, samples, settings.ranges[-1], variances, settings), settings)
     reasons |= more
     run = _settled(first, samples, variances, settings, len(settings.ranges), settings.settling, progress)
-    for _ in range(settings.variance_rounds):
-        better = estimated(run.last, variances, settings)
-        weighted = run.last.weighted(better, settings)
-        gross = gross_contours(weighted, assessed(weighted, better, settings), settings)
-        if near(better, variances) and variances.factor is not None and not gross.any():
-            break
-        left_out = gross if variances.left_out is None else gross | variances.left_out
-        variances = replace(better, left_out=left_out)
-        run = _again(run, samples, variances, settings, progress)
+    weighed, variances = _weighed(run.last, variances, settings)
+    if weighed is not run.last:
+        run = _settled(weighed, samples, variances, settings, run.iterations, 0, progress)
     assessment = assessed(run.last, variances, settings)
-    back = wrongly_left_out(assessment, variances, settings)
-    if back.any() and variances.left_out is not None:
-        # once, so that none goes out and in for ever
-        variances = replace(variances, left_out=variances.left_out & ~back)
-        run = _again(run, samples, variances, settings, progress)
-        assessment = assessed(run.last, variances, settings)
     return solution_of(Outcome(problem, run.last, assessment, variances, samples, reasons, run.iterations, run.converged, run.message), settings)
 
 
@@ -194,12 +182,28 @@ def _settled(
     return _Run(kept, done + settings.iterations, converged=False, message=NOT_CONVERGED)
 
 
-def _again(
-    run: _Run, samples: Sequence[Samples], variances: Variances, settings: AdjustmentSettings, progress: Callable[[str, int, int], None]
-) -> _Run:
-    """Iterate on from where another iteration ended, with other variances."""
-    linear = linearised(run.last.state, samples, settings.ranges[-1], variances, settings)
-    return _settled(linear, samples, variances, settings, run.iterations, 0, progress)
+def _weighed(linear: Linearisation, variances: Variances, settings: AdjustmentSettings) -> tuple[Linearisation, Variances]:
+    """Return the linearisation with the variances that go with its residuals, and contours left out that do not belong to the others.
+
+    It says what the residuals would be with any of them: what moves by so little needs no other.
+    """
+    for _ in range(settings.variance_rounds):
+        better = estimated(linear, variances, settings)
+        weighted = linear.weighted(better, settings)
+        gross = gross_contours(weighted, assessed(weighted, better, settings), settings)
+        if near(better, variances) and variances.factor is not None and not gross.any():
+            break
+        left_out = gross if variances.left_out is None else gross | variances.left_out
+        variances = replace(better, left_out=left_out)
+        linear = linear.weighted(variances, settings)
+    if variances.left_out is None or not variances.left_out.any():
+        return linear, variances
+    back = wrongly_left_out(assessed(linear, variances, settings), variances, settings)
+    if not back.any():
+        return linear, variances
+    # once, so that none goes out and in for ever
+    variances = replace(variances, left_out=variances.left_out & ~back)
+    return linear.weighted(variances, settings), variances
 
 
 def _moved(one: Linearisation, other: Linearisation) -> float:

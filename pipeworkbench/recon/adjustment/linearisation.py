@@ -77,10 +77,11 @@ class Linearisation:
         return replace(self, state=state, observed=observed, unknowns=unknowns, equations=equations)
 
     def weighted(self, variances: Variances, settings: AdjustmentSettings) -> Linearisation:
-        """Return the same observations with other variances of the contours' systematic errors."""
-        systems = reduced(self.groups, variances.precision(self.groups, settings))
-        equations = normal_equations(self.groups, systems, self.observed, self.unknowns)
-        return replace(self, systems=systems, equations=equations)
+        """Return the same observations with other variances of the contours' systematic errors, and others left out."""
+        groups = _counted(self.complete, variances)
+        systems = reduced(groups, variances.precision(groups, settings))
+        equations = normal_equations(groups, systems, self.observed, self.unknowns)
+        return replace(self, groups=groups, systems=systems, equations=equations)
 
     def squares(self, step: Array) -> Array:
         """Return the weighted squares (g,) of the contours' residuals after a step (u,), common errors eliminated."""
@@ -140,8 +141,13 @@ def linearised(
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
         parts = list(pool.map(one, range(len(state.views))))
     complete = joined([part for part, _ in parts])
-    groups = complete if variances.left_out is None else complete.without(variances.left_out)
+    groups = _counted(complete, variances)
     systems = reduced(groups, variances.precision(groups, settings))
     observed, unknowns = state.conditions.at(state.bodies), state.unknowns()
     equations = normal_equations(groups, systems, observed, unknowns)
     return Linearisation(state, groups, complete, systems, tuple(rows for _, rows in parts), observed, unknowns, equations, reach)
+
+
+def _counted(groups: Groups, variances: Variances) -> Groups:
+    """Return groups of which those that are left out count for nothing."""
+    return groups if variances.left_out is None else groups.without(variances.left_out)

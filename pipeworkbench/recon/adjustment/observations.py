@@ -26,7 +26,8 @@ from pipeworkbench.recon.shapes import Shapes
 from pipeworkbench.recon.views import View
 
 SYSTEMATIC = 3  # unknowns of a group: its common error and how it changes
-LENGTH = MOTION + SYSTEMATIC + 1  # columns: motion, systematic errors, distance
+DISTANCE = MOTION  # column: after the motion, before the systematic errors
+LENGTH = DISTANCE + 1 + SYSTEMATIC
 NEIGHBOURS = 21  # samples over which the brighter side is decided
 CLEAR = 0.5  # part by which one side must be brighter more often than the other
 MAD = 1.4826  # standard deviations in a median of absolute deviations of normal errors
@@ -40,7 +41,7 @@ class Groups:
     """Contours in images, g in number, with the normal equations of their samples.
 
     view, owner (g,) rows; part (g,) and curve (g,) name the contour; normal (g, 13, 13) is the weighted product of the
-    columns motion, systematic errors, distance; circle (g,) tells which are closed; samples, found (g,) numbers; effective (g,) number of independent
+    columns motion, distance, systematic errors; circle (g,) tells which are closed; samples, found (g,) numbers; effective (g,) number of independent
     samples; spread (g,) robust standard deviation of the distances in px; missing (g,) the number of independent samples without an edge.
     """
 
@@ -129,9 +130,9 @@ def observe(
     root = np.sqrt(weight)
     columns = np.empty((len(samples), LENGTH))
     columns[:, :MOTION] = np.where(usable[:, None], motion, 0.0) * root[:, None]
-    columns[:, MOTION] = root
-    columns[:, MOTION + 1 : MOTION + SYSTEMATIC] = samples.pattern * root[:, None]
-    columns[:, -1] = np.where(usable, rows.distance, 0.0) * root
+    columns[:, DISTANCE] = np.where(usable, rows.distance, 0.0) * root
+    columns[:, DISTANCE + 1] = root
+    columns[:, DISTANCE + 2 :] = samples.pattern * root[:, None]
     count = len(samples.group_owner)
     groups = Groups(
         np.full(count, number),
@@ -261,10 +262,7 @@ class Reduced:
 
 def reduced(groups: Groups, precision: Array) -> Reduced:
     """Eliminate the common errors and trends of groups with known precisions (g, 3), 1 / px^2."""
-    own = [*range(MOTION), LENGTH - 1]
-    errors = list(range(MOTION, MOTION + SYSTEMATIC))
-    between = groups.normal[:, own][:, :, errors]
-    matrix = groups.normal[:, errors][:, :, errors] + precision[:, :, None] * np.eye(SYSTEMATIC)
-    cofactor = np.linalg.inv(matrix)
-    solver = cofactor @ np.swapaxes(between, 1, 2)
-    return Reduced(groups.normal[:, own][:, :, own] - between @ solver, solver, cofactor)
+    own, errors = slice(DISTANCE + 1), slice(DISTANCE + 1, LENGTH)
+    cofactor = np.linalg.inv(groups.normal[:, errors, errors] + precision[:, :, None] * np.eye(SYSTEMATIC))
+    solver = cofactor @ groups.normal[:, errors, own]
+    return Reduced(groups.normal[:, own, own] - groups.normal[:, own, errors] @ solver, solver, cofactor)
