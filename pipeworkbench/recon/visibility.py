@@ -101,6 +101,10 @@ def _near(centre: Array, sight: Array, distance: Array, surfaces: Frustums | Cir
         furthest = np.maximum(np.linalg.norm(begin, axis=1), np.linalg.norm(end, axis=1)) + radius
         # a chord is shorter than the offset that it stands for, by less than this where lines of sight are neighbours
         near = gap <= radius + 1.1 * furthest * spread[:, None]
+        # what begins behind all points of a block hides none of them
+        nearest = np.clip(np.nan_to_num(-np.einsum("si,si->s", begin, way) / np.einsum("si,si->s", way, way)), 0.0, 1.0)
+        depth = np.linalg.norm(begin + nearest[:, None] * way, axis=1) - radius
+        near &= depth <= np.maximum.reduceat(np.where(known, distance, 0.0), first)[:, None]
     block, surface = np.nonzero(near & (size > 0)[:, None])
     per_chunk = max(CHUNK // BLOCK, 1)
     for start in range(0, len(block), per_chunk):
