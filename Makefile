@@ -33,6 +33,7 @@ bench: setup  ## accuracy and time of the steps, beside peers where these are to
 	-$(python) -m pip install -q --disable-pip-version-check -c requirements/freecad-debian12.txt -e '.[bench]'
 	$(python) bench/measuring.py
 	$(python) bench/reconstruct.py
+	$(python) bench/recompute.py
 	[ ! -d ../shared ] || $(python) bench/elbows_flanges.py ../shared --out $(results)/elbows_flanges.md
 	[ ! -d ../shared ] || $(python) bench/adjust.py ../shared --out $(results)/adjust.md
 	$(python) bench/register.py

@@ -5,7 +5,7 @@ from typing import Any
 
 import FreeCADGui
 
-from pipeworkbench.features.base import restored_hooks
+from pipeworkbench.features.base import window_hooks
 from pipeworkbench.files import package_folder
 
 NAME = "Pipe Workbench"
@@ -17,7 +17,7 @@ def _show_restored(obj: Any) -> None:
     show(obj)
 
 
-restored_hooks.append(_show_restored)
+window_hooks.append(_show_restored)
 
 
 class PipeWorkbench(FreeCADGui.Workbench):  # type: ignore[misc]  # FreeCAD has no types

@@ -3,16 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.features.base import is_kind
+from pipeworkbench.features.base import is_kind, refuse_newer
 from pipeworkbench.features.component import component_of, set_component
-from pipeworkbench.features.connections import ConnectionsFeature, data_of, is_needed, set_connections
+from pipeworkbench.features.connections import ConnectionsFeature, data_of, is_needed, linked_joints, set_connections
 from pipeworkbench.features.kinds import FEATURES, add_component, is_component
-from pipeworkbench.features.station import StationFeature, add_station_object
-from pipeworkbench.pipeline import AnyComponent, Pipeline
+from pipeworkbench.features.project import georeference_of, make_project, project_of, set_georeference
+from pipeworkbench.features.station import StationFeature, add_station_object, set_pose
+from pipeworkbench.pipeline import AnyComponent, Matrix, Pipeline
 from pipeworkbench.recon.station import Station
 
 
@@ -27,12 +28,12 @@ def components_in(document: Any) -> list[Any]:
 
 
 def connections_in(document: Any) -> dict[str, Any]:
-    """Return the objects that hold joints and stations, by the name of their frame."""
+    """Return the objects that hold what is known beyond components, by the name of their frame."""
     return {obj.FrameName: obj for obj in document.Objects if is_kind(obj, ConnectionsFeature)}
 
 
 def add_station(document: Any, station: Station) -> Any:
-    """Add a station; refuse a second one of the same name, which could not be told from the first.
+    """Add a station, and a project to hold it where there is none; refuse a second one of the same name, which could not be told from the first.
 
     Raises
     ------
@@ -41,11 +42,14 @@ def add_station(document: Any, station: Station) -> Any:
     """
     if any(obj.StationName == station.name for obj in stations_in(document)):
         raise InputError(station.source, "name", f"the document has a station '{station.name}' already", "use another document or rename the station")
-    return add_station_object(document, station)
+    project = project_of(document) or make_project(document)
+    obj = add_station_object(document, station)
+    project.addObject(obj)
+    return obj
 
 
 def add_pipeline(document: Any, pipeline: Pipeline) -> list[Any]:
-    """Add a pipeline's components, each into its station's group, and return their objects.
+    """Add a pipeline's components, each into its station's group, with the joints between them, and return their objects.
 
     A component that the document holds already (the same pick, reconstructed again) is brought up to date
     in place, so that what depends on it stays; one that the user fixed is left alone.
@@ -53,58 +57,133 @@ def add_pipeline(document: Any, pipeline: Pipeline) -> list[Any]:
     Raises
     ------
     InputError
-        Where the document has a component of another kind under the same name.
+        Where the document has a component of another kind under the same name, or a newer version of the workbench
+        made an object that would have to be changed.
     """
-    groups = {obj.StationName: obj for obj in stations_in(document)}
     known = {obj.ComponentId: obj for obj in components_in(document)}
-    objects = []
+    objects: list[Any] = []
+    made: dict[str, list[Any]] = {}
     for component in pipeline.components:
         obj = known.get(component.id)
         if obj is None:
             obj = add_component(document, component)
-            group = groups.get(component.station or pipeline.frame)
-            if group is not None:
-                group.addObject(obj)
-        elif not is_kind(obj, FEATURES[type(component)]):
-            raise InputError(document.Label, obj.Label, f"is not a {component.kind}, as '{component.id}' now is", "delete or rename the object")
-        elif not obj.Fixed:
-            set_component(obj, component)
+            made.setdefault(component.station or pipeline.frame, []).append(obj)
+        else:
+            _bring_up_to_date(obj, component)
         objects.append(obj)
-    connections = connections_in(document).get(pipeline.frame)
-    if connections is None and is_needed(pipeline):
-        connections = document.addObject("App::FeaturePython", "Connections")
-        ConnectionsFeature(connections)
-    if connections is not None:
-        set_connections(connections, pipeline)
+    for station, measured in made.items():
+        put_into_group(document, measured, station)
+    _connect(document, pipeline, objects)
     return objects
+
+
+def replace_components(document: Any, pipeline: Pipeline, chosen: Collection[str] | None = None) -> list[Any]:
+    """Give a document's components what an adjustment or a merge made of them, in place, and return their objects.
+
+    Parameters
+    ----------
+    document : FreeCAD document
+    pipeline : Pipeline
+        With all components of its frame; its joints, station poses and sigma0 take the place of the document's.
+    chosen : collection of str, optional
+        Ids of the components to change; all of the pipeline's where it is not given. Those that the user fixed stay as they are.
+
+    Raises
+    ------
+    InputError
+        Where the document does not have one of the components any more; nothing was changed then.
+    """
+    known = {obj.ComponentId: obj for obj in components_in(document)}
+    missing = [component.id for component in pipeline.components if component.id not in known]
+    if missing:
+        raise InputError(document.Label, ", ".join(missing), "the document does not have these components any more", "start the adjustment again")
+    for component in pipeline.components:
+        if chosen is None or component.id in chosen:
+            _bring_up_to_date(known[component.id], component)
+    objects = [known[component.id] for component in pipeline.components]
+    _connect(document, pipeline, objects)
+    return objects
+
+
+def remove_component(obj: Any) -> None:
+    """Remove a component object from its document; what was joined to it has open ends then."""
+    obj.Document.removeObject(obj.Name)
+
+
+def put_into_group(document: Any, objects: Iterable[Any], station: str | None) -> None:
+    """Put objects into the group of a station, into the project's where there is no station of this name."""
+    group = next((other for other in stations_in(document) if other.StationName == station), None) or project_of(document)
+    if group is not None:
+        group.addObjects(list(objects))
 
 
 def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline:
     """Return the document's components (or those among ``objects``) as a pipeline, with the joints between them.
 
+    A component whose station was deleted still names it: it was measured there.
+
     Raises
     ------
     InputError
-        Where there is no component, or where they come from stations that are not merged.
+        Where there is no component, where they come from stations that are not merged, or where a newer version of
+        the workbench made one of them.
     """
     chosen = [obj for obj in (document.Objects if objects is None else objects) if is_component(obj)]
     if not chosen:
         raise InputError(document.Label, "", "the document has no pipes or fittings", "reconstruct some picks first")
     components = tuple(component_of(obj) for obj in chosen)
     measured_by = {component.station for component in components if component.station}
-    merged = [data for data in map(data_of, connections_in(document).values()) if measured_by <= {data["frame"], *data["stations"]}]
+    connections = connections_in(document).values()
+    for obj in connections:
+        refuse_newer(obj)
+    merged = [data for data in map(data_of, connections) if measured_by <= {data["frame"], *data["stations"]}]
     if merged:
-        return _joined(document, merged[0], components)
-    if len(measured_by) > 1:
+        data = merged[0]
+    elif len(measured_by) > 1:
         raise InputError(document.Label, "", "the components come from several stations that are not merged", "select those of one station")
-    stations = stations_in(document)
-    frame = next(iter(measured_by), stations[0].StationName if stations else document.Label)
-    return Pipeline.of_station(frame, components)
-
-
-def _joined(document: Any, data: dict[str, Any], components: tuple[AnyComponent, ...]) -> Pipeline:
-    """Return components with what the document knows beyond them; joints to what is not among them are left out."""
-    held = {component.id for component in components}
+    else:
+        stations = stations_in(document)
+        frame = next(iter(measured_by), stations[0].StationName if stations else document.Label)
+        data = Pipeline.of_station(frame, ()).to_dict()
     bare = Pipeline(frame=data["frame"], components=components).to_dict()["components"]
-    joints = [joint for joint in data["joints"] if {joint["a"], joint["b"]} <= held]
+    joints = linked_joints(chosen, data["joints"])
+    georeference = georeference_of(document)
+    if georeference is not None and data.get("georeference", georeference)["frame"] == georeference["frame"]:
+        data |= {"georeference": georeference}
     return Pipeline.from_dict(data | {"components": bare, "joints": joints}, source=document.Label)
+
+
+def pose_of(station_object: Any) -> Matrix:
+    """Return where a station object's level frame lies in the document's frame (4 x 4, mm): as merged, else where it was."""
+    name = station_object.StationName
+    poses = [data["stations"] for data in map(data_of, connections_in(station_object.Document).values()) if name in data["stations"]]
+    # a merged frame has more stations than the station's own
+    rows = max(poses, key=len)[name]["frame_from_level"] if poses else Pipeline.of_station(name, ()).stations[name].frame_from_level
+    first, second, third, fourth = (tuple(row) for row in rows)
+    return first, second, third, fourth
+
+
+def _bring_up_to_date(obj: Any, component: AnyComponent) -> None:
+    if not is_kind(obj, FEATURES[type(component)]):
+        raise InputError(obj.Document.Label, obj.Label, f"is not a {component.kind}, as '{component.id}' now is", "delete or rename the object")
+    if not obj.Fixed:
+        set_component(obj, component)
+
+
+def _connect(document: Any, pipeline: Pipeline, objects: Iterable[Any]) -> None:
+    """Keep what a pipeline knows beyond its components."""
+    connections = connections_in(document).get(pipeline.frame)
+    if connections is None and is_needed(pipeline):
+        connections = document.addObject("App::FeaturePython", "Connections")
+        ConnectionsFeature(connections)
+    if connections is not None:
+        set_connections(connections, pipeline, objects)
+    for station in stations_in(document):
+        if station.StationName in pipeline.stations:
+            set_pose(station, pose_of(station))
+    project = project_of(document)
+    if project is not None:
+        if connections is not None:
+            project.addObject(connections)
+        if "georeference" in pipeline.extra:
+            set_georeference(project, pipeline.extra["georeference"])

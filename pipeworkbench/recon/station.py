@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import logging
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -136,7 +137,53 @@ def read_station(path: Path) -> Station:
         Where the file or an image is missing or a value does not fit; names file, key and remedy.
     """
     source = path / "station.json" if path.is_dir() else path
-    data = read_json(source)
+    return station_from(read_json(source), source)
+
+
+def station_from(data: Any, source: Path, images: Mapping[str, Path] | None = None) -> Station:
+    """Check the structure of a ``station.json`` and return it as a station.
+
+    Parameters
+    ----------
+    data : object
+        What the file holds.
+    source : Path
+        The file, which relative names of images are relative to and errors name.
+    images : mapping, optional
+        Where the images of cameras are instead, by the cameras' names.
+
+    Raises
+    ------
+    InputError
+        Where an image is missing or a value does not fit; names file, key and remedy.
+    """
+    station = _checked(data, source)
+    given = images or {}
+    paths = tuple(given.get(camera.name, source.parent / camera.image) for camera in station.cameras)
+    seen: dict[Path, int] = {}
+    for index, image in enumerate(paths):
+        key = f"cameras[{index}].image"
+        if not _is_file(image):
+            raise InputError(source, key, f"there is no file {image}", "put the image there or correct the name")
+        earlier = seen.setdefault(image.resolve(), index)
+        if earlier != index:
+            raise InputError(source, key, f"is the image of cameras[{earlier}] as well", "give each camera its own photograph")
+    return Station(station.name, _oriented(station), paths, source)
+
+
+def cameras_from(data: Any, source: Path) -> tuple[Camera, ...]:
+    """Return the cameras of a ``station.json``'s structure in the station's level frame; their images need not be there.
+
+    Raises
+    ------
+    InputError
+        Where a value does not fit.
+    """
+    return _oriented(_checked(data, source))
+
+
+def _checked(data: Any, source: Path) -> _Station:
+    """Check everything of a ``station.json``'s structure but its images."""
     if not isinstance(data, dict):
         raise InputError(source, "", "is not a JSON object", f"give a file of schema {SCHEMA}")
     if data.get("schema") != SCHEMA:
@@ -146,8 +193,17 @@ def read_station(path: Path) -> Station:
     names = [camera.name for camera in station.cameras]
     if len(set(names)) < len(names):
         raise InputError(source, "cameras", f"names are not unique ({', '.join(names)})", "give each camera its own name")
+    cameras = _oriented(station)
+    for index, camera in enumerate(cameras):
+        _refuse_impossible_lens(camera.interior, f"cameras[{index}].interior", source)
+    _refuse_single_viewpoint(cameras, source)
+    return station
+
+
+def _oriented(station: _Station) -> tuple[Camera, ...]:
+    """Return the cameras in the station's level frame."""
     level_from_rig = _rotation(station.level_from_rig)
-    cameras = tuple(
+    return tuple(
         Camera(
             camera.name,
             camera.interior.interior(camera.width, camera.height),
@@ -156,19 +212,6 @@ def read_station(path: Path) -> Station:
         )
         for camera in station.cameras
     )
-    for index, camera in enumerate(cameras):
-        _refuse_impossible_lens(camera.interior, f"cameras[{index}].interior", source)
-    _refuse_single_viewpoint(cameras, source)
-    images = tuple(source.parent / camera.image for camera in station.cameras)
-    seen: dict[Path, int] = {}
-    for index, image in enumerate(images):
-        key = f"cameras[{index}].image"
-        if not _is_file(image):
-            raise InputError(source, key, f"there is no file {image}", "put the image there or correct the name")
-        earlier = seen.setdefault(image.resolve(), index)
-        if earlier != index:
-            raise InputError(source, key, f"is the image of cameras[{earlier}] as well", "give each camera its own photograph")
-    return Station(station.name, cameras, images, source)
 
 
 def write_station(station: Station, path: Path) -> None:

@@ -107,11 +107,12 @@ def test_moved_component_keeps_its_standard_and_loses_its_accuracy(document):
     assert (flange.quality, flange.loa) == (None, None)
 
 
-def test_other_pressure_class_is_another_flange(document):
+def test_pressure_class_that_the_standard_does_not_have_makes_a_flange_of_no_standard(document):
     obj = add_component(document, BY_ID["F1"])
-    obj.PressureClass = 40
+    obj.PressureClass = 37
     flange = component_of(obj)
-    assert (flange.pn, flange.equivalents, flange.standard) == (40, (), None)
+    assert (flange.pn, flange.equivalents, flange.standard) == (37, (), None)
+    assert (obj.PN, obj.Standard) == ("none", "none")
     assert flange.quality == BY_ID["F1"].quality  # it was not moved
 
 
@@ -142,7 +143,9 @@ def test_nominal_diameter_of_an_elbow_is_not_a_pipes_standard(document):
     obj = add_component(document, BY_ID["E1"])
     obj.NominalDiameter = "DN 50"
     elbow = component_of(obj)
-    assert (elbow.outer_diameter, elbow.wall_thickness, elbow.dn, elbow.standard) == (60.3, 2.9, 50, None)
+    # its own: that of the bends
+    assert (elbow.outer_diameter, elbow.wall_thickness, elbow.dn) == (60.3, 2.9, 50)
+    assert (elbow.bend_type, elbow.bend_radius, elbow.standard) == ("3D", 76, "EN 10253 / DIN 2605")
 
 
 @pytest.mark.parametrize(
@@ -238,7 +241,7 @@ def test_pipe_of_version_1_is_read(document):
     obj.Extra = json.dumps({"note": "kept"})
     obj.SchemaVersion = 1
     obj.Proxy.onDocumentRestored(obj)
-    assert obj.SchemaVersion == 2
+    assert obj.SchemaVersion == 3
     back = component_of(obj)
     assert back.extra == {"note": "kept"}
     assert back.start == pytest.approx(pipe.start)

@@ -124,7 +124,7 @@ def test_clicks_from_photographs_to_ifc(document, tmp_path):
     QtTest.QTest.mouseClick(button("Import Station"), QtCore.Qt.LeftButton)
     pump()
     assert opened
-    assert [obj.Label for obj in document.Objects] == ["Station A"]
+    assert [obj.Label for obj in document.Objects] == ["Project", "Station A"]
 
     # two picks are enough to see that it works; the sample as a whole is tested without a window
     picks = json.loads((SAMPLE / "picks.json").read_text(encoding="utf-8"))
@@ -154,7 +154,7 @@ def test_clicks_from_photographs_to_ifc(document, tmp_path):
     assert target.read_text(encoding="utf-8").count("IFCPIPESEGMENT(") == 2
 
     document.undo()
-    assert [obj.Label for obj in document.Objects] == ["Station A"]
+    assert [obj.Label for obj in document.Objects] == ["Project", "Station A"]
     document.redo()
     assert len(document.Objects) == count
 
@@ -177,7 +177,7 @@ def test_bad_picks_are_told_in_a_dialog_and_leave_the_document_alone(document, t
     pump()
     assert len(said) == 1
     assert "picks.json" in said[0]
-    assert len(document.Objects) == 1
+    assert [obj.Label for obj in document.Objects] == ["Project", "Station A"]
 
 
 def test_document_written_without_a_window_shows_its_pipes(tmp_path):
