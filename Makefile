@@ -1,11 +1,11 @@
 # The project's jobs; each installs what it needs first and can be repeated.
-.PHONY: help setup demo test install lint bench docs clean
+.PHONY: help setup demo test install lint bench docs translations clean
 .DEFAULT_GOAL := help
 python := .venv/bin/python
 results := results
 
 help:  ## list the targets
-	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 10
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
 
 setup:  ## install FreeCAD (Debian) and the Python packages where they are missing
 	@bash scripts/setup.sh
@@ -41,6 +41,9 @@ bench: setup  ## accuracy and time of the steps, beside peers where these are to
 docs: setup  ## write the reference of the reconstruction modules to build/docs
 	$(python) -m pip install -q --disable-pip-version-check -c requirements/freecad-debian12.txt -e '.[docs]'
 	$(python) -m pdoc -o build/docs pipeworkbench.pipeline pipeworkbench.catalogue pipeworkbench.solids pipeworkbench.recon pipeworkbench.exports
+
+translations: setup  ## collect the window's texts and compile their translations
+	$(python) scripts/translations.py
 
 clean:  ## remove the environment and everything that was made
 	rm -rf .venv build dist $(results)

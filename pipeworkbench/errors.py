@@ -33,7 +33,12 @@ class InputError(PipeWorkbenchError):
 
 
 class MissingPackageError(PipeWorkbenchError):
-    """A Python package or program that this step needs is not installed."""
+    """A Python package or program that this step needs is not installed.
+
+    ``packages`` are its names as pip knows them, empty where it is not pip's.
+    """
 
     def __init__(self, name: str, purpose: str, command: str) -> None:
+        self.name, self.purpose = name, purpose
+        self.packages = tuple(name.lower().split(", ")) if command.startswith("pip install") else ()
         super().__init__(f"{purpose} needs {name}, which is not installed here; install it with: {command}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The workbench: menu, toolbar and icon; loads its commands when it is first activated."""
+"""The workbench: menu, toolbars, preferences and icon; loads its commands when it is first activated."""
 
 from typing import Any
 
@@ -28,12 +28,27 @@ class PipeWorkbench(FreeCADGui.Workbench):  # type: ignore[misc]  # FreeCAD has 
     Icon = str(package_folder("resources") / "icons" / "workbench.svg")
 
     def Initialize(self) -> None:  # FreeCAD's name
-        """Register the commands and put them into menu and toolbar."""
+        """Register commands, translations and preferences, and make menu and toolbars."""
         from pipeworkbench.commands import register
+        from pipeworkbench.gui.preferences_page import GROUP, ColoursPage, MeasuringPage
+        from pipeworkbench.gui.translation import load_translations
 
-        names = register()
-        self.appendToolbar(NAME, names)
-        self.appendMenu(NAME, names)
+        load_translations()
+        for row, group in enumerate(register()):
+            self.appendToolbar(group.title, group.names)
+            self.appendMenu(NAME, ["Separator", *group.names] if row else group.names)
+        # the group's icon: preferences-pipe_workbench.svg
+        FreeCADGui.addIconPath(str(package_folder("resources") / "icons"))
+        for page in (MeasuringPage, ColoursPage):
+            FreeCADGui.addPreferencePage(page, GROUP)
+
+    def ContextMenu(self, recipient: str) -> None:  # noqa: ARG002  # FreeCAD's name; "View" or "Tree"
+        """Offer what can be done with what is selected."""
+        from pipeworkbench.commands import IN_CONTEXT_MENU
+
+        usable = [command.name for command in IN_CONTEXT_MENU if command().IsActive()]
+        if usable and FreeCADGui.Selection.getSelection():
+            self.appendContextMenu(NAME, usable)
 
     def GetClassName(self) -> str:  # FreeCAD's name
         """Tell FreeCAD that this is a Python workbench."""

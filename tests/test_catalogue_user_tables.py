@@ -24,6 +24,7 @@ from pipeworkbench.catalogue import (
     reducers,
     tees,
     use_folder,
+    use_folders,
     using_folder,
 )
 from pipeworkbench.catalogue.tables import read_table
@@ -38,9 +39,9 @@ GOOD = "Works 7,11,16,40,48.3,157,110,18,4,M16,20,50,64,7\n"
 
 @pytest.fixture(autouse=True)
 def _catalogue_as_before():
-    before = catalogue().folder
+    before = catalogue().folders
     yield
-    use_folder(before)
+    use_folders(before)
 
 
 @pytest.fixture
@@ -58,7 +59,7 @@ def refused(folder):
         (folder / name).write_bytes(text.encode(encoding))
         with pytest.raises(InputError) as error:
             use_folder(folder)
-        assert catalogue().folder is None
+        assert catalogue().folders == ()
         message = str(error.value)
         assert message.startswith(f"{folder / name}: ")
         assert "\n" not in message
@@ -346,14 +347,14 @@ def test_wrong_table_ends_the_command_with_one_line(command, folder, sample, pip
     (line,) = capsys.readouterr().err.splitlines()
     assert "flanges_ours.csv: line 2: column 'D': is -157, not more than 0; give a positive number" in line
     assert not (tmp_path / "out.json").exists()
-    assert catalogue().folder is None
+    assert catalogue().folders == ()
 
 
 def test_conversion_with_tables_of_ones_own_leaves_no_trace(folder, pipeline, tmp_path):
     write(folder, "pipes_ours.csv", PIPES + "50.5,41,3.2\n")
     assert main(["convert", str(pipeline), "--out", str(tmp_path / "out.json"), "--catalogue", str(folder), "--quiet"]) == 0
     assert json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))["components"][0]["outer_diameter"] == 48.3
-    assert catalogue().folder is None
+    assert catalogue().folders == ()
 
 
 @pytest.mark.slow
@@ -365,3 +366,14 @@ def test_reconstruction_finds_a_size_of_the_users_table(folder, altered, tmp_pat
     assert main(["reconstruct", str(station), "--out", str(out), "--catalogue", str(folder), "--quiet"]) == 0
     components = json.loads(out.read_text(encoding="utf-8"))["components"]
     assert {(c["dn"], c["wall_thickness"], c["verified"]) for c in components if c["outer_diameter"] == 48.3} == {(41, 4, 0)}
+
+
+def test_later_folder_takes_the_place_of_an_earlier_one(tmp_path):
+    for name, wall in (("one", "3.2"), ("two", "4.5")):
+        (tmp_path / name).mkdir()
+        write(tmp_path / name, "pipes_ours.csv", PIPES + f"50.5,41,{wall}\n")
+    write(tmp_path / "one", "pipes_more.csv", PIPES + "51.5,42,3\n")
+    use_folders((tmp_path / "one", tmp_path / "two"))
+    assert (pipe_size(50.5).wall_thickness, pipe_size(51.5).dn) == (4.5, 42)
+    use_folders((tmp_path / "two", tmp_path / "one"))
+    assert pipe_size(50.5).wall_thickness == 3.2

@@ -20,7 +20,7 @@ Examples
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from pipeworkbench.catalogue.lookup import DIAMETER_TOLERANCE, RIM_TOLERANCE, Catalogue
@@ -65,6 +65,7 @@ __all__ = [
     "reducers",
     "tees",
     "use_folder",
+    "use_folders",
     "using_folder",
 ]
 
@@ -84,7 +85,18 @@ def use_folder(folder: Path | None) -> Catalogue:
     InputError
         Where a table does not fit; the catalogue in use stays.
     """
-    _in_use[0] = Catalogue(folder)
+    return use_folders(() if folder is None else (folder,))
+
+
+def use_folders(folders: Iterable[Path]) -> Catalogue:
+    """Use the tables of several of a user's folders from now on; a later folder's take the place of an earlier one's.
+
+    Raises
+    ------
+    InputError
+        Where a table does not fit; the catalogue in use stays.
+    """
+    _in_use[0] = Catalogue(*folders)
     return _in_use[0]
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -36,15 +36,15 @@ def built_in(kind: type[R]) -> tuple[R, ...]:
 
 
 class Catalogue:
-    """The tables that come with the program, with those of a user's folder added.
+    """The tables that come with the program, with those of the user's folders added.
 
-    A user's record with the key of a built-in one takes its place. The user's tables are read at once, so
-    that what is wrong in them is said before the work begins; the others when they are first needed.
+    A user's record with the key of a built-in one takes its place, and that of a later folder an earlier one's. The user's tables are
+    read at once, so that what is wrong in them is said before the work begins; the others when they are first needed.
 
     Parameters
     ----------
-    folder : Path, optional
-        A folder with tables of the user's own; see `tables`.
+    folders : Path
+        Folders with tables of the user's own; see `tables`.
 
     Raises
     ------
@@ -52,15 +52,16 @@ class Catalogue:
         Where the folder or a table in it does not fit; names file, line and column.
     """
 
-    def __init__(self, folder: Path | None = None) -> None:
-        self.folder = folder
-        self._user: Mapping[type[Record], tuple[Record, ...]] = read_user_tables(folder) if folder is not None else {}
+    def __init__(self, *folders: Path) -> None:
+        self.folders = folders
+        self._user: Sequence[Mapping[type[Record], tuple[Record, ...]]] = tuple(map(read_user_tables, folders))
         self._merged: dict[type[Record], tuple[Any, ...]] = {}
 
     def records(self, kind: type[R]) -> tuple[R, ...]:
         """Return all records of a kind in the order of their keys."""
         if kind not in self._merged:
-            merged = {record.key: record for record in (*built_in(kind), *self._user.get(kind, ()))}
+            own = (record for tables in self._user for record in tables.get(kind, ()))
+            merged = {record.key: record for record in (*built_in(kind), *own)}
             self._merged[kind] = tuple(sorted(merged.values(), key=_order))
         return self._merged[kind]
 

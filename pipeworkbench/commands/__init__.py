@@ -1,19 +1,51 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Toolbar commands, one module each: gather, call, one undoable transaction."""
+"""Toolbar commands, one module each: gather, call, one undoable transaction.
+
+`GROUPS` is the table of them all: a new command is one import and one name in it.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import FreeCADGui
 
+from pipeworkbench.commands.base import Command
+from pipeworkbench.commands.example_project import ExampleProject
 from pipeworkbench.commands.export import Export
 from pipeworkbench.commands.import_station import ImportStation
+from pipeworkbench.commands.photo_window import PhotoWindowCommand
+from pipeworkbench.commands.preferences import ShowPreferences
 from pipeworkbench.commands.reconstruct_picks import ReconstructPicks
 
-COMMANDS = (ImportStation, ReconstructPicks, Export)
+
+@dataclass(frozen=True)
+class Group:
+    """Commands that belong together: a toolbar of their own, and a section of the menu.
+
+    ``title`` is the toolbar's, in English, unlike any other workbench's; FreeCAD translates it (context ``Workbench``).
+    """
+
+    title: str
+    commands: tuple[type[Command], ...]
+
+    @property
+    def names(self) -> list[str]:
+        """FreeCAD's names of the commands."""
+        return [command.name for command in self.commands]
 
 
-def register() -> list[str]:
-    """Add all commands to FreeCAD and return their names in the order of the toolbar."""
-    for command in COMMANDS:
-        FreeCADGui.addCommand(command.name, command())
-    return [command.name for command in COMMANDS]
+GROUPS = (
+    Group("Pipe measuring", (ImportStation, PhotoWindowCommand, ReconstructPicks)),
+    Group("Pipe output", (Export,)),
+    Group("Pipe Workbench help", (ExampleProject, ShowPreferences)),
+)
+IN_CONTEXT_MENU: tuple[type[Command], ...] = (PhotoWindowCommand, Export)  # of the tree and the 3D view
+
+
+def register() -> tuple[Group, ...]:
+    """Add all commands to FreeCAD and return their groups."""
+    for group in GROUPS:
+        for command in group.commands:
+            FreeCADGui.addCommand(command.name, command())
+    return GROUPS

@@ -28,10 +28,8 @@ class Export(Command):
     menu_text = "Export"
     tooltip = "Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV or as a picture"
     icon = "export.svg"
-
-    def IsActive(self) -> bool:  # FreeCAD's name
-        """There must be a document."""
-        return FreeCAD.ActiveDocument is not None
+    accelerator = "Q, X"
+    needs_components = True
 
     def run(self) -> None:
         """Ask for the file and write it."""

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import FreeCAD
 import FreeCADGui
 
 from pipeworkbench.commands.base import Command, transaction
-from pipeworkbench.errors import InputError, one_line
+from pipeworkbench.errors import one_line
 
 
 class ReconstructPicks(Command):
@@ -21,53 +20,59 @@ class ReconstructPicks(Command):
     menu_text = "Reconstruct Picks"
     tooltip = "Reconstruct the pipes that were picked in the station's photographs (picks.json)"
     icon = "reconstruct_picks.svg"
+    needs = ("cv2", "cadquery")
     needs_station = True
 
     def run(self) -> None:
         """Ask for the picks and reconstruct them."""
+        from pipeworkbench.commands.stations import chosen_station
         from pipeworkbench.features.station import station_of
-        from pipeworkbench.gui.dialogs import ask_open, progress
+        from pipeworkbench.gui.dialogs import ask_open
+        from pipeworkbench.gui.translation import tr
 
-        obj = _chosen_station(FreeCAD.ActiveDocument)
+        obj = chosen_station(FreeCAD.ActiveDocument)
         beside = station_of(obj).source.parent / "picks.json"
-        path = ask_open("Reconstruct picks", "Picks (picks.json *.json)", beside)
+        path = ask_open(tr("Reconstruct picks"), tr("Picks") + " (picks.json *.json)", beside)
         if path is not None:
-            with progress("Reconstructing") as report:
-                reconstruct_picks(obj, path, report)
+            reconstruct_picks(obj, path)
             FreeCADGui.SendMsgToActiveView("ViewFit")
 
 
-def reconstruct_picks(obj: Any, path: Path, progress: Callable[[str, int, int], None] = lambda text, done, total: None) -> list[Any]:  # noqa: ARG005
-    """Reconstruct the picks of a file in a station object's photographs; return the components' objects."""
-    from pipeworkbench.features.document import add_pipeline, connections_in
-    from pipeworkbench.features.station import station_of
-    from pipeworkbench.gui.view_providers import show
-    from pipeworkbench.recon.picks import read_picks
-    from pipeworkbench.recon.reconstruct import reconstruct
+def reconstruct_picks(obj: Any, path: Path) -> list[Any]:
+    """Reconstruct the picks of a file in a station object's photographs; return the components' objects.
 
-    station = station_of(obj)
+    Raises
+    ------
+    InputError
+        Where station, photographs or picks do not fit.
+    Cancelled
+        Where the user cancelled it.
+    """
+    from pipeworkbench.features.document import add_pipeline, connections_in
+    from pipeworkbench.features.preferences import adjustment_settings, assemble_settings, pick_settings
+    from pipeworkbench.features.station import station_of
+    from pipeworkbench.gui.translation import tr
+    from pipeworkbench.gui.view_providers import show
+    from pipeworkbench.gui.worker import Progress, run_long
+    from pipeworkbench.recon.picks import read_picks
+    from pipeworkbench.recon.reconstruct import Reconstruction, reconstruct
+
+    document, station = obj.Document, station_of(obj)
     picks = read_picks(path, station)
-    found = reconstruct(station, picks, progress=progress)
-    with transaction(obj.Document, "Reconstruct Picks"):
-        components = add_pipeline(obj.Document, found.pipeline)
-        for made in (*components, *connections_in(obj.Document).values()):
+    settings, adjustment, assembly = pick_settings(), adjustment_settings(), assemble_settings()
+
+    def work(progress: Progress) -> Reconstruction:
+        return reconstruct(station, picks, settings, progress, adjustment=adjustment, assembly=assembly)
+
+    found = run_long(tr("Reconstructing picks"), work, document, leave=True)
+    with transaction(document, "Reconstruct Picks"):
+        components = add_pipeline(document, found.pipeline)
+        for made in (*components, *connections_in(document).values()):
             show(made)
-    FreeCAD.Console.PrintMessage(f"Station {station.name}: {len(components)} components reconstructed\n")
+    report = tr("Station {name}: {count} components reconstructed")
+    FreeCAD.Console.PrintMessage(report.format(name=station.name, count=len(components)) + "\n")
     for index, reason in found.failed_picks:
-        FreeCAD.Console.PrintWarning(f"Pick {index} failed: {one_line(reason)}.\n")
+        FreeCAD.Console.PrintWarning(tr("Pick {index} failed: {reason}.").format(index=index, reason=one_line(reason)) + "\n")
     for warning in found.warnings:
         FreeCAD.Console.PrintMessage(f"{one_line(warning)}\n")
     return components
-
-
-def _chosen_station(document: Any) -> Any:
-    """Return the selected station, or the only one."""
-    from pipeworkbench.features.document import stations_in
-
-    stations = stations_in(document)
-    selected = [obj for obj in FreeCADGui.Selection.getSelection() if obj in stations]
-    if len(selected) == 1:
-        return selected[0]
-    if len(stations) != 1:
-        raise InputError(document.Label, "", f"the document has {len(stations)} stations", "select the one to work on")
-    return stations[0]

@@ -55,13 +55,13 @@ def write_fcstd(pipeline: Pipeline, path: Path, stations: Sequence[Station] = ()
     """
     program = find_freecad()
     package = Path(pipeworkbench.__file__).parent
-    tables = catalogue().folder
+    tables = catalogue().folders
     with written_whole(path) as temporary, tempfile.TemporaryDirectory() as folder:
         pipeline_file, job_file, answer_file = (Path(folder) / name for name in ("pipeline.json", "job.json", "answer.json"))
         pipeline.write(pipeline_file)
         job = {
             "pipeline": str(pipeline_file),
-            "catalogue": str(tables.resolve()) if tables is not None else None,
+            "catalogue": [str(folder.resolve()) for folder in tables],
             "stations": [str(station.source.resolve()) for station in stations],
             "out": str(temporary.resolve()),
             "answer": str(answer_file),

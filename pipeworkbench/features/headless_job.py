@@ -28,13 +28,13 @@ def main() -> None:
 def _write(job: dict) -> None:  # type: ignore[type-arg]
     import FreeCAD
 
-    from pipeworkbench.catalogue import use_folder
+    from pipeworkbench.catalogue import use_folders
     from pipeworkbench.features.document import add_pipeline, add_station
     from pipeworkbench.pipeline import Pipeline
     from pipeworkbench.recon.station import read_station
 
     # the catalogue of whoever gave the job, not the one of FreeCAD's preferences
-    use_folder(Path(job["catalogue"]) if job["catalogue"] else None)
+    use_folders(map(Path, job["catalogue"]))
     pipeline = Pipeline.read(Path(job["pipeline"]))
     document = FreeCAD.newDocument("Pipeline")
     document.Label = pipeline.frame

@@ -4,19 +4,15 @@
 from __future__ import annotations
 
 import itertools
-import math
 from typing import Any, NamedTuple
 
 from pipeworkbench.exports.kinds import COLOURS
+from pipeworkbench.features.preferences import preferences
 
 Colour = tuple[float, float, float]  # red, green, blue from 0 to 1
 
-APPROXIMATE: Colour = (0.90, 0.62, 0.0)
-UNKNOWN: Colour = (0.62, 0.62, 0.62)
 # told apart by colour-blind people too (Okabe and Ito): from good to bad
 GOOD, FAIR, POOR, BAD = (0.0, 0.62, 0.45), (0.34, 0.71, 0.91), (0.94, 0.89, 0.26), (0.84, 0.37, 0.0)
-# upper limits of the RMS distance to the image edges in pixels (the paper's Eq. 4); beyond the last one the component is doubtful
-QUALITY_PX = ((0.3, GOOD), (0.6, FAIR), (1.0, POOR), (math.inf, BAD))
 # USIBD's levels of accuracy as 2 sigma in mm; LOA 10 is what is coarser than LOA 20
 LEVELS = {
     "LOA50": ("LOA 50, up to 1 mm", (0.0, 0.45, 0.70)),
@@ -43,28 +39,40 @@ def colour_of(obj: Any, mode: str) -> Colour:
     mode : str
         "kind", "quality" or "loa".
     """
+    chosen = preferences()
     if mode == "quality":
-        return next(colour for limit, colour in QUALITY_PX if limit >= obj.Quality) if _is_measured(obj) else UNKNOWN
+        return quality_colour(obj.Quality if obj.Quality >= 0 else None)
     if mode == "loa":
-        return LEVELS.get(obj.LevelOfAccuracy, ("", UNKNOWN))[1]
-    return APPROXIMATE if getattr(obj, "Approximate", False) else COLOURS[obj.Proxy.kind]
+        return LEVELS.get(obj.LevelOfAccuracy, ("", chosen.unknown_colour))[1]
+    return chosen.approximate_colour if getattr(obj, "Approximate", False) else chosen.kind_colour(obj.Proxy.kind.kind)
 
 
 def legend_of(mode: str) -> list[LegendEntry]:
     """Return what the colours of a mode ("kind", "quality" or "loa") say, in English."""
+    chosen = preferences()
     if mode == "quality":
-        limits = [limit for limit, _ in QUALITY_PX]
+        limits = [limit for limit, _ in chosen.quality_scale]
         texts = [
             f"up to {limits[0]:g} px",
             *(f"{low:g} to {high:g} px" for low, high in itertools.pairwise(limits[:-1])),
             f"over {limits[-2]:g} px",
         ]
-        entries = [LegendEntry(text, colour) for text, (_, colour) in zip(texts, QUALITY_PX, strict=True)]
-        return [*entries, LegendEntry("not measured", UNKNOWN)]
+        entries = [LegendEntry(text, colour) for text, (_, colour) in zip(texts, chosen.quality_scale, strict=True)]
+        return [*entries, LegendEntry("not measured", chosen.unknown_colour)]
     if mode == "loa":
-        return [*(LegendEntry(text, colour) for text, colour in LEVELS.values()), LegendEntry("not known", UNKNOWN)]
-    return [*(LegendEntry(kind.__name__, colour) for kind, colour in COLOURS.items()), LegendEntry("Approximate pipe", APPROXIMATE)]
+        return [*(LegendEntry(text, colour) for text, colour in LEVELS.values()), LegendEntry("not known", chosen.unknown_colour)]
+    return [
+        *(LegendEntry(kind.__name__, chosen.kind_colour(kind.kind)) for kind in COLOURS),
+        LegendEntry("Approximate pipe", chosen.approximate_colour),
+    ]
 
 
-def _is_measured(obj: Any) -> bool:
-    return bool(obj.Quality >= 0)
+def quality_colour(quality: float | None) -> Colour:
+    """Return the colour of an RMS distance to the image edges in px (the paper's Eq. 4), None where it was not measured."""
+    chosen = preferences()
+    return chosen.unknown_colour if quality is None else next(colour for limit, colour in chosen.quality_scale if limit >= quality)
+
+
+def hex_of(colour: Colour) -> str:
+    """Return a colour as Qt and HTML write it."""
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

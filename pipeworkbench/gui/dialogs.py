@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
 
 from pipeworkbench.features.preferences import PREFERENCES
-from pipeworkbench.gui.compat import QtCore, QtWidgets
+from pipeworkbench.gui.compat import QtWidgets
+
+saved_files: list[Path] = []  # what was asked for with ask_save since FreeCAD began
 
 
 class Cancelled(Exception):  # noqa: N818  # not an error: the user's wish
@@ -21,7 +21,7 @@ class Cancelled(Exception):  # noqa: N818  # not an error: the user's wish
 def ask_open(title: str, file_filter: str, start: Path | None = None) -> Path | None:
     """Ask for an existing file; None where the user cancels. The folder is remembered."""
     name, _ = QtWidgets.QFileDialog.getOpenFileName(
-        FreeCADGui.getMainWindow(), title, str(start or _last_folder()), file_filter, "", QtWidgets.QFileDialog.DontUseNativeDialog
+        FreeCADGui.getMainWindow(), title, str(start or _last_folder()), file_filter, "", QtWidgets.QFileDialog.Option.DontUseNativeDialog
     )
     return _remembered(name)
 
@@ -29,11 +29,13 @@ def ask_open(title: str, file_filter: str, start: Path | None = None) -> Path | 
 def ask_save(title: str, file_filter: str, suggestion: str) -> Path | None:
     """Ask for a file to write; None where the user cancels. The chosen filter's ending is added if there is none."""
     name, chosen = QtWidgets.QFileDialog.getSaveFileName(
-        FreeCADGui.getMainWindow(), title, str(Path(_last_folder()) / suggestion), file_filter, "", QtWidgets.QFileDialog.DontUseNativeDialog
+        FreeCADGui.getMainWindow(), title, str(Path(_last_folder()) / suggestion), file_filter, "", QtWidgets.QFileDialog.Option.DontUseNativeDialog
     )
     path = _remembered(name)
     if path is not None and not path.suffix:
         path = path.with_suffix(chosen.split("*")[-1].rstrip(")"))
+    if path is not None:
+        saved_files.append(path)
     return path
 
 
@@ -42,27 +44,13 @@ def show_error(text: str) -> None:
     QtWidgets.QMessageBox.warning(FreeCADGui.getMainWindow(), "Pipe Workbench", text)
 
 
-@contextlib.contextmanager
-def progress(title: str) -> Iterator[Callable[[str, int, int], None]]:
-    """Show a progress dialog; the function it yields raises Cancelled once the user pressed Cancel."""
-    dialog = QtWidgets.QProgressDialog(title, "Cancel", 0, 0, FreeCADGui.getMainWindow())
-    dialog.setWindowTitle("Pipe Workbench")
-    dialog.setWindowModality(QtCore.Qt.WindowModal)
-    dialog.setMinimumDuration(300)
-
-    def report(text: str, done: int, total: int) -> None:
-        dialog.setLabelText(f"{title}: {text}")
-        dialog.setMaximum(total)
-        dialog.setValue(done)
-        QtWidgets.QApplication.processEvents()
-        if dialog.wasCanceled():
-            raise Cancelled
-
-    try:
-        yield report
-    finally:
-        dialog.close()
-        dialog.deleteLater()
+def ask_folder(title: str, start: Path | None = None) -> Path | None:
+    """Ask for an existing folder; None where the user cancels."""
+    option = QtWidgets.QFileDialog.Option
+    name = QtWidgets.QFileDialog.getExistingDirectory(
+        FreeCADGui.getMainWindow(), title, str(start or _last_folder()), option.DontUseNativeDialog | option.ShowDirsOnly
+    )
+    return Path(name) if name else None
 
 
 def _last_folder() -> str:

@@ -135,6 +135,16 @@ class StationView(ViewProvider):
         if self.scene is not None:
             self.scene.view_changed(view_object, name)
 
+    def doubleClicked(self, view_object: Any) -> bool:  # FreeCAD's name
+        """Show the station's photographs."""
+        from pipeworkbench.gui.failures import failures_told
+
+        with failures_told(view_object.Object.Label):
+            from pipeworkbench.gui.photos.window import open_photo_window
+
+            open_photo_window(view_object.Object)
+        return True
+
     def setupContextMenu(self, view_object: Any, menu: Any) -> None:  # FreeCAD's name
         """Offer what is done with a station's photographs."""
         from pipeworkbench.gui.station_menu import fill
@@ -206,6 +216,11 @@ def colour_by(document: Any, mode: str) -> list[LegendEntry]:
     for obj in components_in(document):
         _colour(obj, mode)
     return legend_of(mode)
+
+
+def recolour(document: Any) -> None:
+    """Give all components of a document the colours that the user has set."""
+    colour_by(document, colour_mode(document))
 
 
 def select(document: Any, names: Iterable[str], *, add: bool = False) -> None:

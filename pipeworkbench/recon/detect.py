@@ -32,6 +32,7 @@ from pipeworkbench.recon.prolong import prolonged
 from pipeworkbench.recon.second_edges import SecondEdgeSettings, cylinders_from_edges
 from pipeworkbench.recon.settle import drawn_onto_edges
 from pipeworkbench.recon.surface import Agreement, agreement, surface_agreement
+from pipeworkbench.recon.threads import thread_count
 from pipeworkbench.recon.vectors import across
 from pipeworkbench.recon.views import View
 
@@ -114,7 +115,7 @@ def detect_cylinders(
     """
     settings = settings or DetectSettings()
     progress("finding lines")
-    with ThreadPoolExecutor(WORKERS) as threads:
+    with ThreadPoolExecutor(thread_count(WORKERS)) as threads:
         segments = list(threads.map(lambda view: long_lines(view.edges, view.camera.interior, settings.segments), views))
         rasters = list(threads.map(lambda view: raster_of(view.edges, NEAR_PX), views))
     progress("matching lines")
@@ -176,7 +177,7 @@ def detect(
     found = detect_cylinders(views, settings, progress)
     progress("measuring pipes")
     picks = [pick for row in range(len(found.sizes)) if (pick := _as_pick(views, found, row)) is not None]
-    with ThreadPoolExecutor(WORKERS) as threads:
+    with ThreadPoolExecutor(thread_count(WORKERS)) as threads:
         answers = list(threads.map(lambda pick: from_pick(views, pick, _nearby(views, found, pick, pick_settings)), picks))
     # a pipe that the measurement takes for another than the detection is not sure enough
     candidates = [

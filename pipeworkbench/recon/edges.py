@@ -10,7 +10,6 @@ better: bench/edges.py) and :mod:`.partial_area_edges` (the paper's).
 from __future__ import annotations
 
 import functools
-import os
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from typing import Any, Literal
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from pipeworkbench.errors import InputError
 from pipeworkbench.recon import noise
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.threads import thread_count
 
 Grey = NDArray[np.uint8] | NDArray[np.uint16]
 
@@ -29,7 +29,6 @@ STRIP_BLOCKS = 8  # blocks of the noise estimate in a strip's height: its arrays
 BORDER = 2  # px along the image's border without edges: their profile is not in the image
 DIRECTIONS = 128  # coarse ones in half a turn
 NO_DIRECTION = 1
-CORES = os.cpu_count() or 1
 
 
 @dataclass(frozen=True)
@@ -135,7 +134,7 @@ def coarse_directions(along_u: Array, along_v: Array) -> NDArray[np.uint8]:
     return (2 * steps).astype(np.uint8)
 
 
-def detect_edges(image: NDArray[Any], settings: EdgeSettings | None = None, cores: int = CORES) -> EdgeMap:
+def detect_edges(image: NDArray[Any], settings: EdgeSettings | None = None, cores: int | None = None) -> EdgeMap:
     """Find the edge points of an image.
 
     Parameters
@@ -143,8 +142,8 @@ def detect_edges(image: NDArray[Any], settings: EdgeSettings | None = None, core
     image : (height, width) or (height, width, 3 or 4) array of uint8 or uint16
         Grey values, or colours in OpenCV's order (blue, green, red, opacity).
     settings : EdgeSettings, optional
-    cores : int
-        Number of threads.
+    cores : int, optional
+        Number of threads at most (default: one for each core of the processor).
 
     Raises
     ------
@@ -158,7 +157,7 @@ def detect_edges(image: NDArray[Any], settings: EdgeSettings | None = None, core
     height, width = grey.shape
     index = np.full((height, width), -1, np.int32)
     smooth, _, _ = kernels(settings.sigma)
-    with ThreadPoolExecutor(max(cores, 1)) as threads:
+    with ThreadPoolExecutor(thread_count(cores)) as threads:
         levels = _noise_levels(grey, smooth, threads)
         if settings.method == "gradient":
             from pipeworkbench.recon.gradient_edges import find, halo_of

@@ -12,7 +12,7 @@ import numpy as np
 from pipeworkbench.pipeline import Pipe, Pipeline
 from pipeworkbench.recon.accuracy import level_of_accuracy
 from pipeworkbench.recon.adjust import AdjustmentSettings, Problem, Solution, StationViews, adjust
-from pipeworkbench.recon.assemble import Completed, complete
+from pipeworkbench.recon.assemble import AssembleSettings, Completed, complete
 from pipeworkbench.recon.candidates import PipeCandidate
 from pipeworkbench.recon.flanges import detect as detect_flanges
 from pipeworkbench.recon.flanges import of_picks as flanges_of_picks
@@ -20,6 +20,7 @@ from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.picks import FailedPick, Picks, PipePick
 from pipeworkbench.recon.pipes import PickAnswer, answer_pick
 from pipeworkbench.recon.station import Station
+from pipeworkbench.recon.threads import thread_count
 from pipeworkbench.recon.vectors import as_vector, rounded
 from pipeworkbench.recon.views import View, views_of
 
@@ -61,6 +62,7 @@ def reconstruct(
     alternatives: int = 1,
     *,
     adjustment: AdjustmentSettings | None = ADJUSTED,
+    assembly: AssembleSettings | None = None,
 ) -> Reconstruction:
     """Reconstruct the pipes and flanges that were picked in a station.
 
@@ -75,6 +77,8 @@ def reconstruct(
         Called with what is being done, how many steps are done and how many there are.
     adjustment : AdjustmentSettings, optional
         Of the common adjustment; None leaves every component as it was found.
+    assembly : AssembleSettings, optional
+        Of what is found between the components, and of their joints.
 
     Raises
     ------
@@ -88,7 +92,7 @@ def reconstruct(
     failed = list(picks.refused)
     ranked: dict[int, tuple[Alternative, ...]] = {}
     # threads: the array operations release the interpreter lock, and nothing needs to be copied
-    with ThreadPoolExecutor(max_workers=WORKERS) as pool:
+    with ThreadPoolExecutor(thread_count(WORKERS)) as pool:
         running = [pool.submit(answer_pick, views, pick, settings, alternatives) for pick in picks.pipes]
         try:
             for done, (pick, future) in enumerate(zip(picks.pipes, running, strict=True), 1):
@@ -107,7 +111,7 @@ def reconstruct(
     progress("flanges and elbows", steps - 2, steps)
     flanges = flanges_of_picks(views, picks.flanges, pipes, station.name)
     failed += [FailedPick(*failure) for failure in flanges.failures]
-    found = complete(views, (*pipes, *flanges.flanges), station=station.name)
+    found = complete(views, (*pipes, *flanges.flanges), assembly, station.name)
     progress("adjusting", steps - 1, steps)
     pipeline, warnings, solution = _adjusted(views, found, station, adjustment)
     progress("done", steps, steps)
@@ -128,6 +132,7 @@ def reconstruct_without_picks(
     *,
     flanges: bool = False,
     adjustment: AdjustmentSettings | None = ADJUSTED,
+    assembly: AssembleSettings | None = None,
 ) -> Reconstruction:
     """Reconstruct the pipes of a station without picks, and what joins them.
 
@@ -142,6 +147,8 @@ def reconstruct_without_picks(
         Look for flanges along the pipes, too; that takes seconds.
     adjustment : AdjustmentSettings, optional
         Of the common adjustment; None leaves every component as it was found.
+    assembly : AssembleSettings, optional
+        Of what is found between the components, and of their joints.
 
     Raises
     ------
@@ -168,7 +175,7 @@ def reconstruct_without_picks(
     pipes = tuple(as_component(candidate, None, station.name, number) for number, candidate in enumerate(candidates))
     progress("flanges and elbows", STEPS + 1, STEPS + 3)
     also = detect_flanges(views, pipes, station.name) if flanges else ()
-    found = complete(views, (*pipes, *also), station=station.name)
+    found = complete(views, (*pipes, *also), assembly, station.name)
     progress("adjusting", STEPS + 2, STEPS + 3)
     pipeline, warnings, solution = _adjusted(views, found, station, adjustment)
     progress("done", STEPS + 3, STEPS + 3)

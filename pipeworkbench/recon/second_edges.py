@@ -17,6 +17,7 @@ from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.cylinder import Cylinders
 from pipeworkbench.recon.edge_lines import EdgeLines, samples_in
 from pipeworkbench.recon.edge_raster import EdgeRaster, bin_of
+from pipeworkbench.recon.threads import thread_count
 from pipeworkbench.recon.views import View
 
 
@@ -66,7 +67,7 @@ def cylinders_from_edges(
         Mean part of the samples, over the images, that find the second edge.
     """
     settings = settings or SecondEdgeSettings()
-    with ThreadPoolExecutor(2) as threads:
+    with ThreadPoolExecutor(thread_count(2)) as threads:
         seen = threads.map(lambda view, raster: _hits(view, raster, lines, diameters, settings), views, rasters)
         hits, known = (np.array(x) for x in zip(*seen, strict=True))
     enough = (hits >= settings.least_hits).sum(axis=0) >= settings.least_views

@@ -13,6 +13,7 @@ from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.edges import EdgeMap, EdgeSettings, detect_edges
 from pipeworkbench.recon.images import read_image
 from pipeworkbench.recon.station import Station
+from pipeworkbench.recon.threads import thread_count
 
 MOST_ROWS = 32000  # OpenCV takes no more than 32767 at a time
 SAMPLES = 16384  # of the brightness, at a time: they stay in the processor's cache
@@ -79,5 +80,5 @@ def views_of(station: Station, settings: EdgeSettings | None = None) -> tuple[Vi
         return view_of(station.cameras[index], read_image(station, index), settings)
 
     # two at a time: OpenCV and NumPy release the interpreter lock, and memory stays low
-    with ThreadPoolExecutor(max_workers=2) as pool:
+    with ThreadPoolExecutor(thread_count(2)) as pool:
         return tuple(pool.map(view, range(len(station.cameras))))

@@ -62,7 +62,7 @@ def test_wrong_table_is_refused_by_commands_and_does_not_keep_documents_from_ope
     with pytest.raises(InputError, match=r"flanges_ours\.csv: line 1"):
         use_preferred_catalogue()
     start_with_preferred_catalogue()
-    assert catalogue().folder is None
+    assert catalogue().folders == ()
 
 
 def test_written_document_knows_the_sizes_of_whoever_wrote_it(tables, tmp_path, document):

@@ -2,81 +2,14 @@
 """The workbench in FreeCAD's real window: loading, toolbar, clicks, dialogs, undo."""
 
 import json
-import os
 import subprocess
-import time
-from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
 import pytest
-from PySide import QtCore
-from PySide2 import QtTest
+from window import ROOT, SAMPLE, answer_message, choose_file, press, pump, screenshot, when_dialog_opens
 
-import pipeworkbench
 from pipeworkbench.gui.compat import QtGui, QtWidgets
-
-ROOT = Path(pipeworkbench.__file__).resolve().parent.parent
-SAMPLE = ROOT / "resources" / "samples" / "dummy" / "A"
-SCREENSHOTS = os.environ.get("PIPEWORKBENCH_SCREENSHOTS")
-
-
-def pump(milliseconds=100):
-    end = time.monotonic() + milliseconds / 1000
-    while time.monotonic() < end:
-        QtWidgets.QApplication.processEvents()
-        time.sleep(0.005)
-
-
-def screenshot(name):
-    if SCREENSHOTS:
-        pump(300)
-        for dock in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDockWidget):
-            dock.setVisible(dock.objectName() in ("Combo View", "Report view"))
-        pump(500)
-        # the screen, not the window: a grab of the window leaves the 3D view out
-        QtWidgets.QApplication.primaryScreen().grabWindow(0).save(str(Path(SCREENSHOTS) / f"{name}.png"))
-
-
-def button(text):
-    FreeCADGui.activateWorkbench("PipeWorkbench")
-    pump()
-    bar = next(bar for bar in FreeCADGui.getMainWindow().findChildren(QtWidgets.QToolBar) if bar.windowTitle() == "Pipe Workbench")
-    bar.show()
-    action = next(action for action in bar.actions() if action.text().replace("&", "") == text)
-    return bar.widgetForAction(action)
-
-
-def when_dialog_opens(kind, act, tries=200):
-    """Once a dialog of this kind is open, act on it; a dialog that never comes fails the test by leaving act undone."""
-    done = []
-
-    def look(left=tries):
-        dialogs = [w for w in QtWidgets.QApplication.topLevelWidgets() if isinstance(w, kind) and w.isVisible()]
-        if dialogs:
-            done.append(True)
-            act(dialogs[0])
-        elif left:
-            QtCore.QTimer.singleShot(50, lambda: look(left - 1))
-
-    QtCore.QTimer.singleShot(50, look)
-    return done
-
-
-def choose_file(path):
-    def act(dialog):
-        dialog.findChild(QtWidgets.QLineEdit).setText(str(path))
-        dialog.accept()
-
-    return act
-
-
-@pytest.fixture
-def document():
-    made = FreeCAD.newDocument("gui")
-    made.UndoMode = 1
-    yield made
-    FreeCAD.closeDocument(made.Name)
 
 
 def test_workbench_is_listed_with_icon_menu_and_tooltips():
@@ -86,7 +19,7 @@ def test_workbench_is_listed_with_icon_menu_and_tooltips():
     workbench = FreeCADGui.activeWorkbench()
     assert workbench.name() == "PipeWorkbench"
     assert not QtGui.QIcon(workbench.Icon).isNull()
-    assert "Pipe Workbench" in workbench.listToolbars()
+    assert {"Pipe measuring", "Pipe output", "Pipe Workbench help"} <= set(workbench.listToolbars())
     for name in ("PipeWB_ImportStation", "PipeWB_ReconstructPicks", "PipeWB_Export"):
         command = FreeCADGui.Command.get(name).getInfo()
         assert command["menuText"]
@@ -121,7 +54,7 @@ def test_commands_are_off_until_they_can_work(document):
 
 def test_clicks_from_photographs_to_ifc(document, tmp_path):
     opened = when_dialog_opens(QtWidgets.QFileDialog, choose_file(SAMPLE / "station.json"))
-    QtTest.QTest.mouseClick(button("Import Station"), QtCore.Qt.LeftButton)
+    press("Import Station")
     pump()
     assert opened
     assert [obj.Label for obj in document.Objects] == ["Project", "Station A"]
@@ -132,7 +65,7 @@ def test_clicks_from_photographs_to_ifc(document, tmp_path):
     few = tmp_path / "picks.json"
     few.write_text(json.dumps(picks), encoding="utf-8")
     opened = when_dialog_opens(QtWidgets.QFileDialog, choose_file(few))
-    QtTest.QTest.mouseClick(button("Reconstruct Picks"), QtCore.Qt.LeftButton)
+    press("Reconstruct Picks")
     pump(500)
     assert opened
     components = [obj for obj in document.Objects if hasattr(obj, "OutsideDiameter")]
@@ -148,7 +81,7 @@ def test_clicks_from_photographs_to_ifc(document, tmp_path):
 
     target = tmp_path / "out.ifc"
     opened = when_dialog_opens(QtWidgets.QFileDialog, choose_file(target))
-    QtTest.QTest.mouseClick(button("Export"), QtCore.Qt.LeftButton)
+    press("Export")
     pump()
     assert opened
     assert target.read_text(encoding="utf-8").count("IFCPIPESEGMENT(") == 2
@@ -166,14 +99,9 @@ def test_bad_picks_are_told_in_a_dialog_and_leave_the_document_alone(document, t
     bad = tmp_path / "picks.json"
     bad.write_text('{"schema": "pipeworkbench-picks/1", "picks": []}', encoding="utf-8")
     said = []
-
-    def read_message(dialog):
-        said.append(dialog.text())
-        dialog.accept()
-
     when_dialog_opens(QtWidgets.QFileDialog, choose_file(bad))
-    when_dialog_opens(QtWidgets.QMessageBox, read_message)
-    QtTest.QTest.mouseClick(button("Reconstruct Picks"), QtCore.Qt.LeftButton)
+    when_dialog_opens(QtWidgets.QMessageBox, answer_message(said))
+    press("Reconstruct Picks")
     pump()
     assert len(said) == 1
     assert "picks.json" in said[0]
@@ -203,11 +131,12 @@ def test_document_written_without_a_window_shows_its_pipes(tmp_path):
 def test_every_kind_of_component_has_its_place_in_the_tree_and_its_colour(tmp_path):
     from pipeworkbench.commands.export import export
     from pipeworkbench.exports.fcstd import write_fcstd
-    from pipeworkbench.exports.kinds import COLOURS
     from pipeworkbench.features.component import component_of
     from pipeworkbench.features.document import components_in, connections_in
+    from pipeworkbench.features.preferences import Preferences
     from pipeworkbench.pipeline import Pipeline
 
+    chosen = Preferences()
     everything = Pipeline.read(ROOT / "tests" / "data" / "one_of_everything.json")
     path = tmp_path / "everything.FCStd"
     write_fcstd(everything, path)
@@ -219,7 +148,7 @@ def test_every_kind_of_component_has_its_place_in_the_tree_and_its_colour(tmp_pa
             assert obj.ViewObject.Visibility
             assert type(obj.ViewObject.Proxy).__name__ == f"{component.kind.capitalize()}View"
             if not getattr(component, "approximate", False):
-                assert obj.ViewObject.ShapeColor[:3] == pytest.approx(COLOURS[type(component)], abs=0.01)
+                assert obj.ViewObject.ShapeColor[:3] == pytest.approx(chosen.kind_colour(component.kind), abs=0.01)
         for obj in (*components_in(opened), *connections_in(opened).values()):
             assert QtGui.QIcon(obj.ViewObject.Proxy.getIcon()).pixmap(32, 32).toImage().pixelColor(16, 16).alpha() > 0
         FreeCADGui.ActiveDocument.ActiveView.viewFront()

@@ -19,6 +19,7 @@ from pipeworkbench.recon.adjustment.sampling import Samples, samples_of
 from pipeworkbench.recon.adjustment.state import State
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.shapes import shapes_of_bodies
+from pipeworkbench.recon.threads import thread_count
 from pipeworkbench.recon.views import View
 
 WORKERS = 2  # images at a time; more wait for each other's interpreter lock
@@ -107,7 +108,7 @@ class Linearisation:
 def sampled(state: State, settings: AdjustmentSettings) -> tuple[Samples, ...]:
     """Return the samples of all images at a state."""
     shapes = shapes_of_bodies(state.bodies)
-    with ThreadPoolExecutor(max_workers=WORKERS) as pool:
+    with ThreadPoolExecutor(thread_count(WORKERS)) as pool:
         return tuple(pool.map(lambda camera: samples_of(camera, state.bodies, shapes, settings), state.cameras))
 
 
@@ -119,7 +120,7 @@ def image_distances(state: State, samples: Sequence[Samples], reach: float, sett
         seen = some.seen_by(camera, shapes)
         return matched_edges(view, seen.position, seen.normal, some, reach, settings).distance
 
-    with ThreadPoolExecutor(max_workers=WORKERS) as pool:
+    with ThreadPoolExecutor(thread_count(WORKERS)) as pool:
         return np.concatenate([np.zeros(0), *pool.map(one, state.views, state.cameras, samples)])
 
 
@@ -138,7 +139,7 @@ def linearised(
         known = matched[number] if matched else None
         return observe(state.views[number], state.cameras[number], number, samples[number], shapes, state.bodies, reach, settings, known)
 
-    with ThreadPoolExecutor(max_workers=WORKERS) as pool:
+    with ThreadPoolExecutor(thread_count(WORKERS)) as pool:
         parts = list(pool.map(one, range(len(state.views))))
     complete = joined([part for part, _ in parts])
     groups = _counted(complete, variances)

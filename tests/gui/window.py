@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Helpers of the tests in FreeCAD's window: waiting with a deadline, toolbar buttons, dialogs, pictures of the screen."""
+
+import os
+import time
+from pathlib import Path
+
+import FreeCAD
+import FreeCADGui
+
+import pipeworkbench
+from pipeworkbench.gui.compat import QtCore, QtWidgets, qt_module
+
+QTest = qt_module("QtTest").QTest
+LEFT = QtCore.Qt.MouseButton.LeftButton
+ROOT = Path(pipeworkbench.__file__).resolve().parent.parent
+SAMPLE = ROOT / "resources" / "samples" / "dummy" / "A"
+SCREENSHOTS = os.environ.get("PIPEWORKBENCH_SCREENSHOTS")
+DEADLINE_S = 20.0
+
+
+def pump(milliseconds=100):
+    """Let the window live for a while."""
+    end = time.monotonic() + milliseconds / 1000
+    while time.monotonic() < end:
+        QtWidgets.QApplication.processEvents()
+        time.sleep(0.005)
+
+
+def wait_until(condition, seconds=DEADLINE_S):
+    """Let the window live until a condition holds; tell whether it came to hold in time."""
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        pump(10)
+    return True
+
+
+def later(action, milliseconds=50):
+    """Do something once the window has gone on, for what runs an event loop of its own."""
+    QtCore.QTimer.singleShot(milliseconds, action)
+
+
+def screenshot(name):
+    """Save a picture of the screen where PIPEWORKBENCH_SCREENSHOTS names a folder."""
+    if SCREENSHOTS:
+        pump(300)
+        for dock in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDockWidget):
+            if dock.objectName() in ("Tree view", "Property view", "Selection view", "Python console", "DAG View"):
+                dock.setVisible(False)
+        pump(500)
+        # the screen, not the window: a grab of the window leaves the 3D view out
+        QtWidgets.QApplication.primaryScreen().grabWindow(0).save(str(Path(SCREENSHOTS) / f"{name}.png"))
+
+
+def toolbars():
+    """Return the workbench's toolbars, shown."""
+    FreeCADGui.activateWorkbench("PipeWorkbench")
+    pump()
+    names = FreeCADGui.activeWorkbench().listToolbars()
+    bars = [bar for bar in FreeCADGui.getMainWindow().findChildren(QtWidgets.QToolBar) if bar.objectName() in names]
+    for bar in bars:
+        bar.show()
+    return bars
+
+
+def button(text):
+    """Return the toolbar button of a command, by its English or translated text."""
+    actions = [(bar, action) for bar in toolbars() for action in bar.actions()]
+    return next(bar.widgetForAction(action) for bar, action in actions if action.text().replace("&", "") == text)
+
+
+def press(text):
+    """Click a command's toolbar button, once FreeCAD has switched it on."""
+    widget = button(text)
+    assert wait_until(widget.isEnabled), f"'{text}' stays off"
+    QTest.mouseClick(widget, LEFT)
+
+
+def when_dialog_opens(kind, act, tries=200):
+    """Once a dialog of this kind is open, act on it; a dialog that never comes fails the test by leaving act undone."""
+    done = []
+
+    def look(left=tries):
+        dialogs = [w for w in QtWidgets.QApplication.topLevelWidgets() if isinstance(w, kind) and w.isVisible()]
+        if dialogs:
+            done.append(True)
+            act(dialogs[0])
+        elif left:
+            later(lambda: look(left - 1))
+
+    later(look)
+    return done
+
+
+def choose_file(path):
+    """Return what types a path into a file dialog and accepts it."""
+
+    def act(dialog):
+        dialog.findChild(QtWidgets.QLineEdit).setText(str(path))
+        dialog.accept()
+
+    return act
+
+
+def answer_message(said):
+    """Return what reads a message box into a list and accepts it."""
+
+    def act(dialog):
+        said.append(dialog.text())
+        dialog.accept()
+
+    return act
+
+
+def log_text():
+    """Return what the report view shows."""
+    view = FreeCADGui.getMainWindow().findChild(QtWidgets.QTextEdit, "Report view")
+    return view.toPlainText() if view else ""
+
+
+def import_sample(document):
+    """Add the sample station to a document and return the object."""
+    from pipeworkbench.commands.import_station import import_station
+
+    FreeCAD.setActiveDocument(document.Name)
+    return import_station(SAMPLE / "station.json", document)
