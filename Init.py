@@ -3,7 +3,12 @@
 
 from pathlib import Path
 
+import FreeCAD
+
 import pipeworkbench
 from pipeworkbench.environment import use_environment
 
 use_environment(Path(pipeworkbench.__file__).resolve().parent.parent)
+
+# for FreeCAD's File > Export; what else there is to export has endings that FreeCAD's own exporters have, too
+FreeCAD.addExportType("Table of pipes and fittings (*.csv)", "pipeworkbench.features.table_export")

@@ -79,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
         "reconstruct",
         help="pipes from a station's photographs, picked or not",
         description="Reconstructs the pipes of a station, picked or found by themselves, and writes them in the formats of the outputs' endings.",
-        epilog="Endings: .json .csv .ifc .step .FCStd .png. Lengths are mm in the station's level frame.",
+        epilog="Endings: .json .csv .ifc .step .FCStd .png .html. Lengths are mm in the station's level frame.",
     )
     command.add_argument("station", metavar="STATION_DIR", type=Path, nargs="+", help="folder with station.json (or that file); several are merged")
     command.add_argument(
@@ -97,6 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--quiet", action="store_true", help="no table, no progress, no warnings")
     command.add_argument("--json", action="store_true", help="print a machine-readable summary instead of the table")
     _add_catalogue(command)
+    _add_language(command)
     command.set_defaults(run=_reconstruct)
     _add_convert(commands)
     return parser
@@ -123,12 +124,17 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
     command.add_argument("--name", help="name of the station; default: that of its folder")
     command.add_argument("--quiet", action="store_true", help="no output, no warnings")
     _add_catalogue(command)
+    _add_language(command)
     command.set_defaults(run=_convert)
     cli_place.add_parser(commands)
 
 
 def _add_catalogue(command: argparse.ArgumentParser) -> None:
     command.add_argument("--catalogue", metavar="DIR", type=Path, help="folder with CSV tables of your own, which add to the standards'")
+
+
+def _add_language(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--language", choices=["en", "de"], default="en", help="of the report (.html); default: en")
 
 
 def _reconstruct(options: argparse.Namespace) -> int:
@@ -147,7 +153,7 @@ def _reconstruct(options: argparse.Namespace) -> int:
         if options.json:
             print(json.dumps(_summary(found, (), time.perf_counter() - began)))
         raise _nothing_found(found, stations[0].source if picks is None else files[0], auto=picks is None)
-    outputs = _written(options.out, found.pipeline, separate, stations)
+    outputs = _written(options, found.pipeline, separate, stations)
     seconds = time.perf_counter() - began
     if options.json:
         print(json.dumps(_summary(found, outputs, seconds)))
@@ -171,20 +177,20 @@ def _found(options: argparse.Namespace, stations: Sequence[Station], picks: Sequ
         return reconstruct(stations[0], picks[0], settings, progress, options.alternatives, adjustment=adjustment), ()
 
 
-def _written(paths: Sequence[Path], pipeline: Pipeline, separate: Sequence[Pipeline], stations: Sequence[Station]) -> list[Path]:
+def _written(options: argparse.Namespace, pipeline: Pipeline, separate: Sequence[Pipeline], stations: Sequence[Station]) -> list[Path]:
     """Write the pipeline, and beside it, so that nothing is lost, those of stations that could not be merged."""
     from pipeworkbench.exports.writers import Result, write
     from pipeworkbench.pipeline import free_id
 
-    outputs = list(paths)
-    for path in paths:
-        write(Result(pipeline, tuple(stations)), path)
+    outputs = list(options.out)
+    for path in options.out:
+        write(Result(pipeline, tuple(stations), options.language), path)
     for one in separate:
         # a station may be called what no file can be
         name = re.sub(r"[^\w.-]", "_", one.frame)
-        for path in paths:
+        for path in options.out:
             own = path.with_stem(free_id(f"{path.stem}-{name}", {other.stem for other in outputs if other.suffix == path.suffix}))
-            write(Result(one, tuple(stations)), own)
+            write(Result(one, tuple(stations), options.language), own)
             outputs.append(own)
     return outputs
 
@@ -310,7 +316,7 @@ def _convert_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> int:
             raise InputError(COMMAND_LINE, f"--{name.replace('_', '-')}", f"is for rigs, {options.input} is a pipeline", "leave it out")
     check_paths(options.out, has_photographs=False, inputs=(options.input,))
     for path in options.out:
-        write(Result(pipeline), path)
+        write(Result(pipeline, language=options.language), path)
         if not options.quiet:
             print(f"written: {path}")
     return DONE

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The command line: what it refuses and how, and the whole way from photographs to files."""
 
+import argparse
 import csv
 import json
 import logging
@@ -680,7 +681,8 @@ def test_stations_that_stay_apart_are_written_beside_whatever_they_are_called(tm
     pipelines = [
         Pipeline.of_station(name, (Pipe(id="P1", start=(0, 0, 0), end=(0, 0, 900.0), outer_diameter=48.3),)) for name in ("A", "../B:1", "..?B 1")
     ]
-    outputs = cli._written([tmp_path / "plant.json", tmp_path / "plant.csv"], pipelines[0], pipelines[1:], ())
+    options = argparse.Namespace(out=[tmp_path / "plant.json", tmp_path / "plant.csv"], language="en")
+    outputs = cli._written(options, pipelines[0], pipelines[1:], ())
     assert len(set(outputs)) == 6
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(path.name for path in outputs)
     assert {Pipeline.read(path).frame for path in outputs if path.suffix == ".json"} == {"A", "../B:1", "..?B 1"}

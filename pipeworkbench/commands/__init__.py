@@ -10,13 +10,17 @@ from dataclasses import dataclass
 
 import FreeCADGui
 
+from pipeworkbench.commands.adjust import Adjust
 from pipeworkbench.commands.base import Command
+from pipeworkbench.commands.deviations import Deviations
 from pipeworkbench.commands.example_project import ExampleProject
 from pipeworkbench.commands.export import Export
 from pipeworkbench.commands.import_station import ImportStation
+from pipeworkbench.commands.merge_stations import MergeStations
 from pipeworkbench.commands.photo_window import PhotoWindowCommand
 from pipeworkbench.commands.preferences import ShowPreferences
 from pipeworkbench.commands.reconstruct_picks import ReconstructPicks
+from pipeworkbench.commands.report import Report
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,8 @@ class Group:
 
 GROUPS = (
     Group("Pipe measuring", (ImportStation, PhotoWindowCommand, ReconstructPicks)),
-    Group("Pipe output", (Export,)),
+    Group("Pipe adjustment", (Adjust, MergeStations, Deviations)),
+    Group("Pipe output", (Export, Report)),
     Group("Pipe Workbench help", (ExampleProject, ShowPreferences)),
 )
 IN_CONTEXT_MENU: tuple[type[Command], ...] = (PhotoWindowCommand, Export)  # of the tree and the 3D view

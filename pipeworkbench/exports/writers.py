@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.exports import fcstd, ifc, pictures, step, tables
+from pipeworkbench.exports import fcstd, ifc, pictures, report, step, tables
 from pipeworkbench.pipeline import Pipeline
 from pipeworkbench.recon.station import Station
 
@@ -18,10 +18,11 @@ LONGEST_NAME = 200  # bytes; file systems take 255, and the temporary name besid
 
 @dataclass(frozen=True)
 class Result:
-    """What there is to write: a pipeline and the stations whose photographs show it."""
+    """What there is to write: a pipeline, the stations whose photographs show it, and the language of the report."""
 
     pipeline: Pipeline
     stations: tuple[Station, ...] = field(default=())
+    language: str = "en"
 
 
 WRITERS: dict[str, Callable[[Result, Path], None]] = {
@@ -31,6 +32,7 @@ WRITERS: dict[str, Callable[[Result, Path], None]] = {
     ".step": lambda result, path: step.write_step(result.pipeline, path),
     ".fcstd": lambda result, path: fcstd.write_fcstd(result.pipeline, path, result.stations),
     ".png": lambda result, path: pictures.write_picture(result.pipeline, result.stations, path),
+    ".html": lambda result, path: report.write_report(result.pipeline, path, result.stations, language=result.language),
 }
 
 

@@ -13,17 +13,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.pipeline import AnyComponent, Matrix, Pipeline, Vector, moved
+from pipeworkbench.pipeline import AnyComponent, Matrix, Pipe, Pipeline, Vector, moved
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.registration.landmarks import Landmarks, landmarks_of
 from pipeworkbench.recon.registration.network import adjust_network
-from pipeworkbench.recon.registration.observations import observations_of_points
+from pipeworkbench.recon.registration.observations import distances, observations_of, observations_of_points
 from pipeworkbench.recon.registration.pairwise import overlap_of
 from pipeworkbench.recon.registration.poses import Pose
 from pipeworkbench.recon.registration.pretransformation import from_points
 from pipeworkbench.recon.registration.results import CandidatePose
 from pipeworkbench.recon.registration.settings import NetworkSettings, RegistrationSettings, SearchSettings
-from pipeworkbench.recon.registration.solve import Solved, solve
-from pipeworkbench.recon.registration.stations import Stations, stations_of
+from pipeworkbench.recon.registration.solve import solve
+from pipeworkbench.recon.registration.stations import stations_of
+from pipeworkbench.recon.registration.verification import explained_pairs
 from pipeworkbench.recon.vectors import as_vector
 
 RIGID = 1e-6  # by which the rotation of a typed placement may differ from one: what rounded figures leave
@@ -167,7 +169,36 @@ def placement_on_model(
     if 1 in solved.lost:
         return ModelPlacement(None, (), (), (solved.lost[1],))
     pose = solved.solution.poses[1]
-    return ModelPlacement(pose.matrix(), _deviations(stations, solved, pose))
+    pairs = [(pair.id_a, pair.id_b, pair.kind, pair.distances) for pair in solved.pairs]
+    one, other = stations.landmarks
+    return ModelPlacement(pose.matrix(), _deviations((designed, built), (one, other), pairs, pose))
+
+
+def deviations_in_place(built: Pipeline, designed: Pipeline, settings: RegistrationSettings | None = None) -> tuple[Deviation, ...]:
+    """Return how each component deviates from a model that is in the same coordinates: nothing is moved.
+
+    Parameters
+    ----------
+    built : Pipeline
+    designed : Pipeline
+        In the built one's frame.
+    settings : RegistrationSettings, optional
+        By default what is built may be 100 mm off the design.
+    """
+    search = (settings or _design_settings()).search
+    marks = landmarks_of(designed), landmarks_of(built)
+    if not len(marks[0]) or not len(marks[1]):
+        return _deviations((designed, built), marks, (), Pose.identity())
+    pairs = explained_pairs(*marks, Pose.identity(), search)
+    observed = observations_of(*marks, pairs, Pose.identity(), (0, 1))
+    no_turn, no_shift = np.array([[1.0, 0.0, 0.0, 0.0]] * 2), np.zeros((2, 3))
+    apart = distances(observed, no_turn, no_shift)
+    found = []
+    for i, j, both in zip(pairs.first, pairs.second, apart.tolist(), strict=True):
+        one, other = designed.components[i], built.components[j]
+        lengths = tuple(round(value, 3) for value in (both if one.kind == Pipe.kind else both[:1]))
+        found.append((one.id, other.id, one.kind, lengths))
+    return _deviations((designed, built), marks, found, Pose.identity())
 
 
 def _checked(matrix: Sequence[Sequence[float]]) -> Array:
@@ -190,14 +221,22 @@ def _turned(component: AnyComponent, pose: Pose) -> AnyComponent:
     return replace(component, sigma_position=pose.sigmas(component.sigma_position))
 
 
-def _deviations(stations: Stations, solved: Solved, pose: Pose) -> tuple[Deviation, ...]:
-    """Return the deviations of what corresponds, then what has no counterpart."""
-    designed, built = (pipeline.components for pipeline in stations.pipelines)
-    marks, other = stations.landmarks
+def _deviations(
+    pipelines: tuple[Pipeline, Pipeline],
+    landmarks: tuple[Landmarks, Landmarks],
+    pairs: Sequence[tuple[str, str, str, tuple[float, ...]]],
+    pose: Pose,
+) -> tuple[Deviation, ...]:
+    """Return the deviations of what corresponds, designed and built, then what has no counterpart.
+
+    ``pairs`` are (designed id, built id, kind, distances); the pose puts what was built where the model is.
+    """
+    designed, built = (pipeline.components for pipeline in pipelines)
+    marks, other = landmarks
     rows, other_rows = ({component.id: row for row, component in enumerate(components)} for components in (designed, built))
     found = []
-    for pair in solved.pairs:
-        i, j = rows[pair.id_a], other_rows[pair.id_b]
+    for designed_id, built_id, kind, lengths in pairs:
+        i, j = rows[designed_id], other_rows[built_id]
         axis, direction = marks.axis[i], pose.rotation @ other.axis[j]
         offset = pose.points(other.point[j]) - marks.point[i]
         if marks.is_axis[i]:
@@ -209,8 +248,8 @@ def _deviations(stations: Stations, solved: Solved, pose: Pose) -> tuple[Deviati
             offset = offset - (offset @ axis) * axis
         angle = float(np.degrees(np.arctan2(np.linalg.norm(np.cross(axis, direction)), abs(axis @ direction))))
         diameters = designed[i].outer_diameter, built[j].outer_diameter
-        found.append(Deviation(pair.id_a, pair.id_b, pair.kind, *diameters, as_vector(offset), pair.distances, round(angle, 4)))
-    with_both = ({pair.id_a for pair in solved.pairs}, {pair.id_b for pair in solved.pairs})
+        found.append(Deviation(designed_id, built_id, kind, *diameters, as_vector(offset), lengths, round(angle, 4)))
+    with_both = ({pair[0] for pair in pairs}, {pair[1] for pair in pairs})
     missing = [Deviation(c.id, None, c.kind, designed_diameter=c.outer_diameter) for c in designed if c.id not in with_both[0]]
     additional = [Deviation(None, c.id, c.kind, built_diameter=c.outer_diameter) for c in built if c.id not in with_both[1]]
     return tuple(itertools.chain(found, missing, additional))

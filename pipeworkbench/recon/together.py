@@ -15,6 +15,7 @@ import numpy as np
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import Pipeline, StationPose
 from pipeworkbench.recon.adjust import AdjustedStation, AdjustmentSettings, Problem, Solution, StationViews, adjust
+from pipeworkbench.recon.adjustment.changes import SUMMARY_KEY, summary_of
 from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.picks import Picks
 from pipeworkbench.recon.reconstruct import ADJUSTED, Reconstruction, reconstruct, reconstruct_without_picks
@@ -111,7 +112,12 @@ def reconstruct_together(
     return Together(pipeline, done, found, found.separate, solution, (*found.problems, *warnings))
 
 
-def adjusted_together(pipeline: Pipeline, views: Mapping[str, Sequence[View]], settings: AdjustmentSettings = ADJUSTED) -> tuple[Pipeline, Solution]:
+def adjusted_together(
+    pipeline: Pipeline,
+    views: Mapping[str, Sequence[View]],
+    settings: AdjustmentSettings = ADJUSTED,
+    progress: Callable[[str, int, int], None] = lambda text, done, total: None,  # noqa: ARG005
+) -> tuple[Pipeline, Solution]:
     """Adjust a merged pipeline and the poses of its stations to the images of all of them.
 
     Parameters
@@ -121,6 +127,8 @@ def adjusted_together(pipeline: Pipeline, views: Mapping[str, Sequence[View]], s
     views : mapping
         The views of each of its stations, by name, in the station's own level frame.
     settings : AdjustmentSettings, optional
+    progress : callable
+        Called with what is being done, how many iterations are done and how many there may be.
 
     Returns
     -------
@@ -140,10 +148,11 @@ def adjusted_together(pipeline: Pipeline, views: Mapping[str, Sequence[View]], s
         )
         for name, pose in pipeline.stations.items()
     )
-    solution = adjust(Problem(pipeline.components, stations, pipeline.joints), settings)
+    solution = adjust(Problem(pipeline.components, stations, pipeline.joints), settings, progress)
     poses = {name: _with_pose(pose, solution.stations[name]) for name, pose in pipeline.stations.items()}
     sigma0 = round(solution.sigma0, 4) if np.isfinite(solution.sigma0) else None
-    return replace(pipeline, components=solution.components, stations=poses, sigma0=sigma0), solution
+    extra = pipeline.extra | {SUMMARY_KEY: summary_of(solution)}
+    return replace(pipeline, components=solution.components, stations=poses, sigma0=sigma0, extra=extra), solution
 
 
 def _with_pose(pose: StationPose, adjusted: AdjustedStation) -> StationPose:

@@ -41,11 +41,11 @@
         </message>
         <message>
             <source>Files of the photographs</source>
-            <translation>Dateien der Fotos</translation>
+            <translation type="vanished">Dateien der Fotos</translation>
         </message>
         <message>
             <source>Files of the photographs, relative to the document</source>
-            <translation type="vanished">Dateien der Fotos, relativ zum Dokument</translation>
+            <translation>Dateien der Fotos, relativ zum Dokument</translation>
         </message>
         <message>
             <source>Flanges of the same dimensions, which images cannot tell apart</source>
@@ -89,15 +89,15 @@
         </message>
         <message>
             <source>Keep the component as it is when its pick is reconstructed again</source>
-            <translation>Das Bauteil so lassen, wie es ist, wenn seine Markierung erneut rekonstruiert wird</translation>
+            <translation type="vanished">Das Bauteil so lassen, wie es ist, wenn seine Markierung erneut rekonstruiert wird</translation>
         </message>
         <message>
             <source>Keep the component where and as it is, whatever is adjusted, measured again or joined to it</source>
-            <translation type="vanished">Das Bauteil an seinem Ort und wie es ist lassen, was auch ausgeglichen, neu gemessen oder angeschlossen wird</translation>
+            <translation>Das Bauteil an seinem Ort und wie es ist lassen, was auch ausgeglichen, neu gemessen oder angeschlossen wird</translation>
         </message>
         <message>
             <source>Keep the photographs inside the document, which makes its file larger</source>
-            <translation type="vanished">Die Fotos im Dokument behalten, was dessen Datei vergrößert</translation>
+            <translation>Die Fotos im Dokument behalten, was dessen Datei vergrößert</translation>
         </message>
         <message>
             <source>Length along the axis</source>
@@ -117,7 +117,7 @@
         </message>
         <message>
             <source>Name of the project in reports and exchange files</source>
-            <translation type="vanished">Name des Projekts in Berichten und Austauschdateien</translation>
+            <translation>Name des Projekts in Berichten und Austauschdateien</translation>
         </message>
         <message>
             <source>Names of the cameras</source>
@@ -133,7 +133,7 @@
         </message>
         <message>
             <source>Numbers of the ends that are joined to the own ones</source>
-            <translation type="vanished">Nummern der Enden, die mit den eigenen verbunden sind</translation>
+            <translation>Nummern der Enden, die mit den eigenen verbunden sind</translation>
         </message>
         <message>
             <source>Of the narrow end across the axis, where it is eccentric</source>
@@ -153,15 +153,15 @@
         </message>
         <message>
             <source>PN</source>
-            <translation>PN</translation>
+            <translation type="vanished">PN</translation>
         </message>
         <message>
             <source>Pressure class as a number</source>
-            <translation type="vanished">Druckstufe als Zahl</translation>
+            <translation>Druckstufe als Zahl</translation>
         </message>
         <message>
             <source>Pressure class of the standards</source>
-            <translation type="vanished">Druckstufe der Normen</translation>
+            <translation>Druckstufe der Normen</translation>
         </message>
         <message>
             <source>RMS distance to the image edges in pixels (Eq. 4)</source>
@@ -221,7 +221,7 @@
         </message>
         <message>
             <source>The georeference as exchange files have it (JSON)</source>
-            <translation type="vanished">Der Raumbezug, wie er in Austauschdateien steht (JSON)</translation>
+            <translation>Der Raumbezug, wie er in Austauschdateien steht (JSON)</translation>
         </message>
         <message>
             <source>The images do not support the pipe well</source>
@@ -229,19 +229,19 @@
         </message>
         <message>
             <source>The pipeline without its components (JSON)</source>
-            <translation>Die Rohrleitung ohne ihre Bauteile (JSON)</translation>
+            <translation type="vanished">Die Rohrleitung ohne ihre Bauteile (JSON)</translation>
         </message>
         <message>
             <source>The pipeline without its components (JSON); of its joints those hold that are linked</source>
-            <translation type="vanished">Die Rohrleitung ohne ihre Bauteile (JSON); von ihren Verbindungen gelten die verknüpften</translation>
+            <translation>Die Rohrleitung ohne ihre Bauteile (JSON); von ihren Verbindungen gelten die verknüpften</translation>
         </message>
         <message>
             <source>The plant's coordinate system; empty where it is not known</source>
-            <translation type="vanished">Koordinatensystem der Anlage; leer, wenn es nicht bekannt ist</translation>
+            <translation>Koordinatensystem der Anlage; leer, wenn es nicht bekannt ist</translation>
         </message>
         <message>
             <source>These flanges as exchange files have them (JSON)</source>
-            <translation type="vanished">Diese Flansche, wie sie in Austauschdateien stehen (JSON)</translation>
+            <translation>Diese Flansche, wie sie in Austauschdateien stehen (JSON)</translation>
         </message>
         <message>
             <source>Thickness C of the plate, raised face included</source>
@@ -253,11 +253,11 @@
         </message>
         <message>
             <source>Type of the standard (2D, 3D, 5D)</source>
-            <translation>Bauart der Norm (2D, 3D, 5D)</translation>
+            <translation type="vanished">Bauart der Norm (2D, 3D, 5D)</translation>
         </message>
         <message>
             <source>Type of the standard; choosing one sets the bend radius</source>
-            <translation type="vanished">Bauart der Norm; ihre Wahl bestimmt den Biegeradius</translation>
+            <translation>Bauart der Norm; ihre Wahl bestimmt den Biegeradius</translation>
         </message>
         <message>
             <source>Version of this object's properties</source>
@@ -269,61 +269,61 @@
         </message>
         <message>
             <source>What is joined to a component follows when the component is changed</source>
-            <translation type="vanished">Was mit einem Bauteil verbunden ist, folgt, wenn es geändert wird</translation>
+            <translation>Was mit einem Bauteil verbunden ist, folgt, wenn es geändert wird</translation>
         </message>
         <message>
             <source>What station.json holds</source>
-            <translation type="vanished">Was station.json enthält</translation>
+            <translation>Was station.json enthält</translation>
         </message>
         <message>
             <source>What the colours of the components say</source>
-            <translation type="vanished">Was die Farben der Bauteile aussagen</translation>
+            <translation>Was die Farben der Bauteile aussagen</translation>
         </message>
         <message>
             <source>Where station.json and the photographs were found last</source>
-            <translation type="vanished">Wo station.json und die Fotos zuletzt gefunden wurden</translation>
+            <translation>Wo station.json und die Fotos zuletzt gefunden wurden</translation>
         </message>
         <message>
             <source>Where the first station's frame lies in the plant</source>
-            <translation type="vanished">Wo das System des ersten Standpunkts in der Anlage liegt</translation>
+            <translation>Wo das System des ersten Standpunkts in der Anlage liegt</translation>
         </message>
         <message>
             <source>Where the station's level frame lies in the document's frame</source>
-            <translation type="vanished">Wo das waagerechte System des Standpunkts im Dokument liegt</translation>
+            <translation>Wo das waagerechte System des Standpunkts im Dokument liegt</translation>
         </message>
         <message>
             <source>Which ends are joined: component and number of its end</source>
-            <translation>Welche Enden verbunden sind: Bauteil und Nummer seines Endes</translation>
+            <translation type="vanished">Welche Enden verbunden sind: Bauteil und Nummer seines Endes</translation>
         </message>
         <message>
             <source>station.json with the calibration of the cameras</source>
-            <translation>station.json mit der Kalibrierung der Kameras</translation>
+            <translation type="vanished">station.json mit der Kalibrierung der Kameras</translation>
         </message>
         <message>
             <source>station.json with the calibration, relative to the document</source>
-            <translation type="vanished">station.json mit der Kalibrierung, relativ zum Dokument</translation>
+            <translation>station.json mit der Kalibrierung, relativ zum Dokument</translation>
         </message>
     </context>
     <context>
         <name>PipeWB_Adjust</name>
         <message>
             <source>Adjust</source>
-            <translation type="vanished">Ausgleichen</translation>
+            <translation>Ausgleichen</translation>
         </message>
         <message>
             <source>Adjust pipes and fittings, all or those selected, to the edges of all photographs, with their joints and standard sizes</source>
-            <translation type="vanished">Rohre und Formstücke, alle oder die ausgewählten, mit ihren Verbindungen und Normgrößen an die Kanten aller Fotos anpassen</translation>
+            <translation>Rohre und Formstücke, alle oder die ausgewählten, mit ihren Verbindungen und Normgrößen an die Kanten aller Fotos anpassen</translation>
         </message>
     </context>
     <context>
         <name>PipeWB_Deviations</name>
         <message>
             <source>Deviations</source>
-            <translation type="vanished">Abweichungen</translation>
+            <translation>Abweichungen</translation>
         </message>
         <message>
             <source>Measure how pipes and fittings deviate from a design: an IFC model, or solids of the document</source>
-            <translation type="vanished">Messen, wie Rohre und Formstücke von einer Planung abweichen: einem IFC-Modell oder Körpern des Dokuments</translation>
+            <translation>Messen, wie Rohre und Formstücke von einer Planung abweichen: einem IFC-Modell oder Körpern des Dokuments</translation>
         </message>
     </context>
     <context>
@@ -356,11 +356,11 @@
         </message>
         <message>
             <source>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV or as a picture</source>
-            <translation>Rohre und Formstücke (alle oder die ausgewählten) als IFC, STEP, JSON, CSV oder als Bild exportieren</translation>
+            <translation type="vanished">Rohre und Formstücke (alle oder die ausgewählten) als IFC, STEP, JSON, CSV oder als Bild exportieren</translation>
         </message>
         <message>
             <source>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV, as a report or as a picture</source>
-            <translation type="vanished">Rohre und Formstücke (alle oder die ausgewählten) als IFC, STEP, JSON, CSV, als Bericht oder als Bild exportieren</translation>
+            <translation>Rohre und Formstücke (alle oder die ausgewählten) als IFC, STEP, JSON, CSV, als Bericht oder als Bild exportieren</translation>
         </message>
     </context>
     <context>
@@ -411,11 +411,11 @@
         <name>PipeWB_MergeStations</name>
         <message>
             <source>Merge Stations</source>
-            <translation type="vanished">Standpunkte zusammenführen</translation>
+            <translation>Standpunkte zusammenführen</translation>
         </message>
         <message>
             <source>Put several stations together over the pipes and fittings they share, and adjust them over all photographs</source>
-            <translation type="vanished">Mehrere Standpunkte über gemeinsame Rohre und Formstücke zusammenführen und über alle Fotos ausgleichen</translation>
+            <translation>Mehrere Standpunkte über gemeinsame Rohre und Formstücke zusammenführen und über alle Fotos ausgleichen</translation>
         </message>
     </context>
     <context>
@@ -470,30 +470,30 @@
         <name>PipeWB_Report</name>
         <message>
             <source>Report</source>
-            <translation type="vanished">Bericht</translation>
+            <translation>Bericht</translation>
         </message>
         <message>
             <source>Write a report of what was measured and how well, with charts and photographs, and open it in the browser</source>
-            <translation type="vanished">Einen Bericht schreiben, was wie gut gemessen wurde, mit Diagrammen und Fotos, und ihn im Browser öffnen</translation>
+            <translation>Einen Bericht schreiben, was wie gut gemessen wurde, mit Diagrammen und Fotos, und ihn im Browser öffnen</translation>
         </message>
     </context>
     <context>
         <name>PipeWorkbench</name>
         <message>
             <source>'{panel}' has results that are not applied. Close it without applying them?</source>
-            <translation type="vanished">„{panel}“ hat Ergebnisse, die nicht übernommen sind. Ohne sie zu übernehmen schließen?</translation>
+            <translation>„{panel}“ hat Ergebnisse, die nicht übernommen sind. Ohne sie zu übernehmen schließen?</translation>
         </message>
         <message>
             <source>'{panel}' is still open</source>
-            <translation type="vanished">„{panel}“ ist noch offen</translation>
+            <translation>„{panel}“ ist noch offen</translation>
         </message>
         <message>
             <source>&lt;b&gt;Station {frame}&lt;/b&gt;: σ₀ {sigma0}, edges ± {sigma} px, redundancy {redundancy}, {count} iterations, {ended}</source>
-            <translation type="vanished">&lt;b&gt;Standpunkt {frame}&lt;/b&gt;: σ₀ {sigma0}, Kanten ± {sigma} px, Redundanz {redundancy}, {count} Iterationen, {ended}</translation>
+            <translation>&lt;b&gt;Standpunkt {frame}&lt;/b&gt;: σ₀ {sigma0}, Kanten ± {sigma} px, Redundanz {redundancy}, {count} Iterationen, {ended}</translation>
         </message>
         <message>
             <source>&lt;b&gt;{stations}&lt;/b&gt; become one: {pairs} pairs, {count} components, σ₀ {sigma0}</source>
-            <translation type="vanished">&lt;b&gt;{stations}&lt;/b&gt; werden eines: {pairs} Paare, {count} Bauteile, σ₀ {sigma0}</translation>
+            <translation>&lt;b&gt;{stations}&lt;/b&gt; werden eines: {pairs} Paare, {count} Bauteile, σ₀ {sigma0}</translation>
         </message>
         <message>
             <source>A click is</source>
@@ -501,7 +501,7 @@
         </message>
         <message>
             <source>A file that is there is replaced</source>
-            <translation type="vanished">Eine vorhandene Datei wird ersetzt</translation>
+            <translation>Eine vorhandene Datei wird ersetzt</translation>
         </message>
         <message>
             <source>A folder with tables of your own</source>
@@ -545,7 +545,7 @@
         </message>
         <message>
             <source>Adjust</source>
-            <translation type="vanished">Ausgleichen</translation>
+            <translation>Ausgleichen</translation>
         </message>
         <message>
             <source>Adjust everything</source>
@@ -553,7 +553,7 @@
         </message>
         <message>
             <source>Adjust over all photographs</source>
-            <translation type="vanished">Über alle Fotos ausgleichen</translation>
+            <translation>Über alle Fotos ausgleichen</translation>
         </message>
         <message>
             <source>Adjustment</source>
@@ -561,19 +561,19 @@
         </message>
         <message>
             <source>All components and the stations' places at once; takes some seconds per station</source>
-            <translation type="vanished">Alle Bauteile und die Orte der Standpunkte zugleich; dauert einige Sekunden je Standpunkt</translation>
+            <translation>Alle Bauteile und die Orte der Standpunkte zugleich; dauert einige Sekunden je Standpunkt</translation>
         </message>
         <message>
             <source>All that are checked are merged into the frame of the reference</source>
-            <translation type="vanished">Alle angekreuzten werden in das System des Bezugs zusammengeführt</translation>
+            <translation>Alle angekreuzten werden in das System des Bezugs zusammengeführt</translation>
         </message>
         <message>
             <source>An IFC model with the pipes as designed, as IfcPipeSegment</source>
-            <translation type="vanished">Ein IFC-Modell mit den geplanten Rohren als IfcPipeSegment</translation>
+            <translation>Ein IFC-Modell mit den geplanten Rohren als IfcPipeSegment</translation>
         </message>
         <message>
             <source>An arrow from each contour point that counts to its edge, enlarged by the window's slider</source>
-            <translation type="vanished">Ein Pfeil von jedem zählenden Konturpunkt zu seiner Kante, verlängert nach dem Regler des Fensters</translation>
+            <translation>Ein Pfeil von jedem zählenden Konturpunkt zu seiner Kante, verlängert nach dem Regler des Fensters</translation>
         </message>
         <message>
             <source>Angle</source>
@@ -581,7 +581,7 @@
         </message>
         <message>
             <source>Angle °</source>
-            <translation type="vanished">Winkel °</translation>
+            <translation>Winkel °</translation>
         </message>
         <message>
             <source>Approximate from a deviation of</source>
@@ -593,23 +593,23 @@
         </message>
         <message>
             <source>As built</source>
-            <translation type="vanished">Bestand</translation>
+            <translation>Bestand</translation>
         </message>
         <message>
             <source>As built; in red where the design has another, which the tooltip tells</source>
-            <translation type="vanished">Im Bestand; rot, wo die Planung einen anderen hat, den der Hinweis nennt</translation>
+            <translation>Im Bestand; rot, wo die Planung einen anderen hat, den der Hinweis nennt</translation>
         </message>
         <message>
             <source>As designed</source>
-            <translation type="vanished">Planung</translation>
+            <translation>Planung</translation>
         </message>
         <message>
             <source>Assign Selected</source>
-            <translation type="vanished">Ausgewählte zuordnen</translation>
+            <translation>Ausgewählte zuordnen</translation>
         </message>
         <message>
             <source>Assigned by hand: {pairs}</source>
-            <translation type="vanished">Von Hand zugeordnet: {pairs}</translation>
+            <translation>Von Hand zugeordnet: {pairs}</translation>
         </message>
         <message>
             <source>At</source>
@@ -633,27 +633,27 @@
         </message>
         <message>
             <source>Between both after the adjustment of the stations' places; of pipes the larger of both ends</source>
-            <translation type="vanished">Zwischen beiden nach der Ausgleichung der Orte; bei Rohren der größere an beiden Enden</translation>
+            <translation>Zwischen beiden nach der Ausgleichung der Orte; bei Rohren der größere an beiden Enden</translation>
         </message>
         <message>
             <source>Between both axes</source>
-            <translation type="vanished">Zwischen beiden Achsen</translation>
+            <translation>Zwischen beiden Achsen</translation>
         </message>
         <message>
             <source>Between the faces of two flanges that are bolted together</source>
-            <translation type="vanished">Zwischen den Dichtflächen zweier verschraubter Flansche</translation>
+            <translation>Zwischen den Dichtflächen zweier verschraubter Flansche</translation>
         </message>
         <message>
             <source>Brightens the dark parts to the right, darkens to the left</source>
-            <translation type="vanished">Nach rechts werden dunkle Stellen heller, nach links dunkler</translation>
+            <translation>Nach rechts werden dunkle Stellen heller, nach links dunkler</translation>
         </message>
         <message>
             <source>Brightness</source>
-            <translation type="vanished">Helligkeit</translation>
+            <translation>Helligkeit</translation>
         </message>
         <message>
             <source>By</source>
-            <translation type="vanished">Um</translation>
+            <translation>Um</translation>
         </message>
         <message>
             <source>Cancel</source>
@@ -673,19 +673,19 @@
         </message>
         <message>
             <source>Choose folder and name</source>
-            <translation type="vanished">Ordner und Namen wählen</translation>
+            <translation>Ordner und Namen wählen</translation>
         </message>
         <message>
             <source>Choose one of the places it fits at ...</source>
-            <translation type="vanished">Einen der passenden Orte wählen ...</translation>
+            <translation>Einen der passenden Orte wählen ...</translation>
         </message>
         <message>
             <source>Choose the file</source>
-            <translation type="vanished">Die Datei wählen</translation>
+            <translation>Die Datei wählen</translation>
         </message>
         <message>
             <source>Choose the folder that the photographs are in now</source>
-            <translation type="vanished">Den Ordner wählen, in dem die Fotos jetzt sind</translation>
+            <translation>Den Ordner wählen, in dem die Fotos jetzt sind</translation>
         </message>
         <message>
             <source>Choose the tool and click on both edges of a pipe in one photograph, or once inside it. The proposed pipe is drawn into all photographs; Enter accepts it, digits choose another proposal, Esc steps back.</source>
@@ -733,39 +733,39 @@
         </message>
         <message>
             <source>Colours in 3D</source>
-            <translation type="vanished">Farben in 3D</translation>
+            <translation>Farben in 3D</translation>
         </message>
         <message>
             <source>Colours of the contours</source>
-            <translation type="vanished">Farben der Konturen</translation>
+            <translation>Farben der Konturen</translation>
         </message>
         <message>
             <source>Colours of the contours and length of the residuals</source>
-            <translation type="vanished">Farben der Konturen und Länge der Restabweichungen</translation>
+            <translation>Farben der Konturen und Länge der Restabweichungen</translation>
         </message>
         <message>
             <source>Compare</source>
-            <translation type="vanished">Vergleichen</translation>
+            <translation>Vergleichen</translation>
         </message>
         <message>
             <source>Compare with</source>
-            <translation type="vanished">Vergleichen mit</translation>
+            <translation>Vergleichen mit</translation>
         </message>
         <message>
             <source>Component</source>
-            <translation type="vanished">Bauteil</translation>
+            <translation>Bauteil</translation>
         </message>
         <message>
             <source>Components</source>
-            <translation type="vanished">Bauteile</translation>
+            <translation>Bauteile</translation>
         </message>
         <message>
             <source>Components that are fixed, or not selected, stay where they are</source>
-            <translation type="vanished">Festgelegte und nicht ausgewählte Bauteile bleiben, wo sie sind</translation>
+            <translation>Festgelegte und nicht ausgewählte Bauteile bleiben, wo sie sind</translation>
         </message>
         <message>
             <source>Compute the adjustment; the document stays as it is until you apply it</source>
-            <translation type="vanished">Die Ausgleichung berechnen; das Dokument bleibt, wie es ist, bis Sie sie übernehmen</translation>
+            <translation>Die Ausgleichung berechnen; das Dokument bleibt, wie es ist, bis Sie sie übernehmen</translation>
         </message>
         <message>
             <source>Computer</source>
@@ -781,23 +781,23 @@
         </message>
         <message>
             <source>Contours</source>
-            <translation type="vanished">Konturen</translation>
+            <translation>Konturen</translation>
         </message>
         <message>
             <source>Contours of the pipes and fittings</source>
-            <translation type="vanished">Konturen der Rohre und Formstücke</translation>
+            <translation>Konturen der Rohre und Formstücke</translation>
         </message>
         <message>
             <source>Contrast</source>
-            <translation type="vanished">Kontrast</translation>
+            <translation>Kontrast</translation>
         </message>
         <message>
             <source>Contrast and brightness of the photographs</source>
-            <translation type="vanished">Kontrast und Helligkeit der Fotos</translation>
+            <translation>Kontrast und Helligkeit der Fotos</translation>
         </message>
         <message>
             <source>Contrast of the photographs</source>
-            <translation type="vanished">Kontrast der Fotos</translation>
+            <translation>Kontrast der Fotos</translation>
         </message>
         <message>
             <source>D {D:g} mm, C {C:g} mm, length {length:g} mm</source>
@@ -805,11 +805,11 @@
         </message>
         <message>
             <source>Dash what is hidden</source>
-            <translation type="vanished">Verdecktes stricheln</translation>
+            <translation>Verdecktes stricheln</translation>
         </message>
         <message>
             <source>Deviations</source>
-            <translation type="vanished">Abweichungen</translation>
+            <translation>Abweichungen</translation>
         </message>
         <message>
             <source>Diameter</source>
@@ -817,19 +817,19 @@
         </message>
         <message>
             <source>Diameter mm</source>
-            <translation type="vanished">Durchmesser mm</translation>
+            <translation>Durchmesser mm</translation>
         </message>
         <message>
             <source>Diameters, bend radii and flange dimensions of standards; sizes that are no standard's are always measured</source>
-            <translation type="vanished">Durchmesser, Biegeradien und Flanschmaße der Normen; andere Größen werden immer gemessen</translation>
+            <translation>Durchmesser, Biegeradien und Flanschmaße der Normen; andere Größen werden immer gemessen</translation>
         </message>
         <message>
             <source>Display</source>
-            <translation type="vanished">Anzeige</translation>
+            <translation>Anzeige</translation>
         </message>
         <message>
             <source>Distance mm</source>
-            <translation type="vanished">Abstand mm</translation>
+            <translation>Abstand mm</translation>
         </message>
         <message>
             <source>Distance of the farthest pipes from the cameras</source>
@@ -849,19 +849,19 @@
         </message>
         <message>
             <source>Edges</source>
-            <translation type="vanished">Kanten</translation>
+            <translation>Kanten</translation>
         </message>
         <message>
             <source>Edges %</source>
-            <translation type="vanished">Kanten %</translation>
+            <translation>Kanten %</translation>
         </message>
         <message>
             <source>Edges found in the photographs, with subpixel accuracy</source>
-            <translation type="vanished">In den Fotos gefundene Kanten, subpixelgenau</translation>
+            <translation>In den Fotos gefundene Kanten, subpixelgenau</translation>
         </message>
         <message>
             <source>Edges within</source>
-            <translation type="vanished">Kanten innerhalb</translation>
+            <translation>Kanten innerhalb</translation>
         </message>
         <message>
             <source>Elbow</source>
@@ -877,7 +877,7 @@
         </message>
         <message>
             <source>Else all components are compared</source>
-            <translation type="vanished">Sonst werden alle Bauteile verglichen</translation>
+            <translation>Sonst werden alle Bauteile verglichen</translation>
         </message>
         <message>
             <source>End the tour</source>
@@ -889,7 +889,7 @@
         </message>
         <message>
             <source>Enlarge the pixels around the pointer (L)</source>
-            <translation type="vanished">Die Pixel um den Mauszeiger vergrößern (L)</translation>
+            <translation>Die Pixel um den Mauszeiger vergrößern (L)</translation>
         </message>
         <message>
             <source>Enter accepts the flange. Choose another type if it is not the right one.</source>
@@ -909,7 +909,7 @@
         </message>
         <message>
             <source>Export</source>
-            <translation type="vanished">Exportieren</translation>
+            <translation>Exportieren</translation>
         </message>
         <message>
             <source>Export it</source>
@@ -925,11 +925,11 @@
         </message>
         <message>
             <source>File</source>
-            <translation type="vanished">Datei</translation>
+            <translation>Datei</translation>
         </message>
         <message>
             <source>Find Photographs</source>
-            <translation type="vanished">Fotos suchen</translation>
+            <translation>Fotos suchen</translation>
         </message>
         <message>
             <source>Find Pipes</source>
@@ -937,11 +937,11 @@
         </message>
         <message>
             <source>Find What They Share</source>
-            <translation type="vanished">Gemeinsames suchen</translation>
+            <translation>Gemeinsames suchen</translation>
         </message>
         <message>
             <source>Find them...</source>
-            <translation type="vanished">Suchen ...</translation>
+            <translation>Suchen ...</translation>
         </message>
         <message>
             <source>Finding pipes</source>
@@ -953,11 +953,11 @@
         </message>
         <message>
             <source>Fit</source>
-            <translation type="vanished">Einpassen</translation>
+            <translation>Einpassen</translation>
         </message>
         <message>
             <source>Fit the model to the pipework</source>
-            <translation type="vanished">Das Modell an die Rohrleitung anpassen</translation>
+            <translation>Das Modell an die Rohrleitung anpassen</translation>
         </message>
         <message>
             <source>Fix the outside diameter; the projection follows, and the pipe is measured with it</source>
@@ -977,7 +977,7 @@
         </message>
         <message>
             <source>Folder with the photographs</source>
-            <translation type="vanished">Ordner mit den Fotos</translation>
+            <translation>Ordner mit den Fotos</translation>
         </message>
         <message>
             <source>Folders with CSV files of your own; a table takes the place of the same one further up and of the standards'</source>
@@ -985,7 +985,7 @@
         </message>
         <message>
             <source>Forget</source>
-            <translation type="vanished">Vergessen</translation>
+            <translation>Vergessen</translation>
         </message>
         <message>
             <source>Forget the click</source>
@@ -997,7 +997,7 @@
         </message>
         <message>
             <source>Format</source>
-            <translation type="vanished">Format</translation>
+            <translation>Format</translation>
         </message>
         <message>
             <source>Free bend radius; the projection follows</source>
@@ -1017,15 +1017,15 @@
         </message>
         <message>
             <source>From the design to what was built</source>
-            <translation type="vanished">Von der Planung zum Bestand</translation>
+            <translation>Von der Planung zum Bestand</translation>
         </message>
         <message>
             <source>Gamma</source>
-            <translation type="vanished">Gamma</translation>
+            <translation>Gamma</translation>
         </message>
         <message>
             <source>Gasket</source>
-            <translation type="vanished">Dichtung</translation>
+            <translation>Dichtung</translation>
         </message>
         <message>
             <source>Good</source>
@@ -1041,23 +1041,23 @@
         </message>
         <message>
             <source>Green within the first limit, yellow up to the second, red beyond; grey has no counterpart</source>
-            <translation type="vanished">Grün innerhalb der ersten Grenze, gelb bis zur zweiten, rot darüber; Graues hat kein Gegenstück</translation>
+            <translation>Grün innerhalb der ersten Grenze, gelb bis zur zweiten, rot darüber; Graues hat kein Gegenstück</translation>
         </message>
         <message>
             <source>Heading</source>
-            <translation type="vanished">Überschrift</translation>
+            <translation>Überschrift</translation>
         </message>
         <message>
             <source>How far from the contours edges are looked for: more where components lie beside their pictures</source>
-            <translation type="vanished">Wie weit von den Konturen nach Kanten gesucht wird: mehr, wo Bauteile neben ihren Bildern liegen</translation>
+            <translation>Wie weit von den Konturen nach Kanten gesucht wird: mehr, wo Bauteile neben ihren Bildern liegen</translation>
         </message>
         <message>
             <source>How far its axis turns</source>
-            <translation type="vanished">Wie weit sich seine Achse dreht</translation>
+            <translation>Wie weit sich seine Achse dreht</translation>
         </message>
         <message>
             <source>How far its middle moves; of pipes across their axis</source>
-            <translation type="vanished">Wie weit sich seine Mitte bewegt; bei Rohren quer zur Achse</translation>
+            <translation>Wie weit sich seine Mitte bewegt; bei Rohren quer zur Achse</translation>
         </message>
         <message>
             <source>How many parts of the processor are used at most</source>
@@ -1065,7 +1065,7 @@
         </message>
         <message>
             <source>How many times their length residuals are drawn</source>
-            <translation type="vanished">Wievielfach verlängert Restabweichungen gezeichnet werden</translation>
+            <translation>Wievielfach verlängert Restabweichungen gezeichnet werden</translation>
         </message>
         <message>
             <source>How near to an edge the pointer must be, in pixels of the screen</source>
@@ -1081,7 +1081,7 @@
         </message>
         <message>
             <source>In the browser</source>
-            <translation type="vanished">Im Browser</translation>
+            <translation>Im Browser</translation>
         </message>
         <message>
             <source>In the document: {names}</source>
@@ -1089,7 +1089,7 @@
         </message>
         <message>
             <source>In the station that was there before</source>
-            <translation type="vanished">Im Standpunkt, der schon da war</translation>
+            <translation>Im Standpunkt, der schon da war</translation>
         </message>
         <message>
             <source>Join ends up to</source>
@@ -1097,11 +1097,11 @@
         </message>
         <message>
             <source>Joints to components that are left out are left out, too</source>
-            <translation type="vanished">Verbindungen zu weggelassenen Bauteilen fallen ebenfalls weg</translation>
+            <translation>Verbindungen zu weggelassenen Bauteilen fallen ebenfalls weg</translation>
         </message>
         <message>
             <source>Kind</source>
-            <translation type="vanished">Art</translation>
+            <translation>Art</translation>
         </message>
         <message>
             <source>Kinds of components</source>
@@ -1109,15 +1109,15 @@
         </message>
         <message>
             <source>LOA</source>
-            <translation type="vanished">LOA</translation>
+            <translation>LOA</translation>
         </message>
         <message>
             <source>Language</source>
-            <translation type="vanished">Sprache</translation>
+            <translation>Sprache</translation>
         </message>
         <message>
             <source>Largest distance {distance:.1f} mm.</source>
-            <translation type="vanished">Größter Abstand {distance:.1f} mm.</translation>
+            <translation>Größter Abstand {distance:.1f} mm.</translation>
         </message>
         <message>
             <source>Length</source>
@@ -1125,15 +1125,15 @@
         </message>
         <message>
             <source>Length of the residuals</source>
-            <translation type="vanished">Länge der Restabweichungen</translation>
+            <translation>Länge der Restabweichungen</translation>
         </message>
         <message>
             <source>Level of accuracy (USIBD)</source>
-            <translation type="vanished">Genauigkeitsstufe (LOA nach USIBD)</translation>
+            <translation>Genauigkeitsstufe (LOA nach USIBD)</translation>
         </message>
         <message>
             <source>Level, plumb and square runs</source>
-            <translation type="vanished">Waagerechte, lotrechte und rechtwinklige Stränge</translation>
+            <translation>Waagerechte, lotrechte und rechtwinklige Stränge</translation>
         </message>
         <message>
             <source>Limit of Baarda's test; 3.29 takes one good observation of a thousand for an outlier</source>
@@ -1141,11 +1141,11 @@
         </message>
         <message>
             <source>Loading the photograph...</source>
-            <translation type="vanished">Das Foto wird geladen ...</translation>
+            <translation>Das Foto wird geladen ...</translation>
         </message>
         <message>
             <source>Look how the stations lie to each other; the document stays as it is until you press OK</source>
-            <translation type="vanished">Suchen, wie die Standpunkte zueinander liegen; das Dokument bleibt, wie es ist, bis Sie OK drücken</translation>
+            <translation>Suchen, wie die Standpunkte zueinander liegen; das Dokument bleibt, wie es ist, bis Sie OK drücken</translation>
         </message>
         <message>
             <source>Looking ...</source>
@@ -1161,7 +1161,7 @@
         </message>
         <message>
             <source>Loupe</source>
-            <translation type="vanished">Lupe</translation>
+            <translation>Lupe</translation>
         </message>
         <message>
             <source>Measure a pipe</source>
@@ -1169,7 +1169,7 @@
         </message>
         <message>
             <source>Measure the deviations; the document stays as it is</source>
-            <translation type="vanished">Die Abweichungen messen; das Dokument bleibt, wie es ist</translation>
+            <translation>Die Abweichungen messen; das Dokument bleibt, wie es ist</translation>
         </message>
         <message>
             <source>Measure the pipe around the corner</source>
@@ -1189,7 +1189,7 @@
         </message>
         <message>
             <source>Merge Stations</source>
-            <translation type="vanished">Standpunkte zusammenführen</translation>
+            <translation>Standpunkte zusammenführen</translation>
         </message>
         <message>
             <source>Move the chosen folder down: its tables come before those above</source>
@@ -1217,7 +1217,7 @@
         </message>
         <message>
             <source>None: everything is determined and nothing is weakly placed.</source>
-            <translation type="vanished">Keine: Alles ist bestimmt, und nichts liegt unsicher.</translation>
+            <translation>Keine: Alles ist bestimmt, und nichts liegt unsicher.</translation>
         </message>
         <message>
             <source>Not measured</source>
@@ -1225,23 +1225,23 @@
         </message>
         <message>
             <source>Note</source>
-            <translation type="vanished">Hinweis</translation>
+            <translation>Hinweis</translation>
         </message>
         <message>
             <source>Of the axes, the larger of both ends of what they have in common; of surfaces the shortest</source>
-            <translation type="vanished">Der Achsen, der größere an beiden Enden des gemeinsamen Stücks; bei Flächen der kürzeste</translation>
+            <translation>Der Achsen, der größere an beiden Enden des gemeinsamen Stücks; bei Flächen der kürzeste</translation>
         </message>
         <message>
             <source>Of the distances between contours and edges</source>
-            <translation type="vanished">Der Abstände zwischen Konturen und Kanten</translation>
+            <translation>Der Abstände zwischen Konturen und Kanten</translation>
         </message>
         <message>
             <source>Of the report's texts</source>
-            <translation type="vanished">Der Texte des Berichts</translation>
+            <translation>Der Texte des Berichts</translation>
         </message>
         <message>
             <source>Open it afterwards</source>
-            <translation type="vanished">Danach öffnen</translation>
+            <translation>Danach öffnen</translation>
         </message>
         <message>
             <source>Open its photo window</source>
@@ -1249,11 +1249,11 @@
         </message>
         <message>
             <source>Otherwise selected components follow their own edges, and gaps may open to their neighbours</source>
-            <translation type="vanished">Sonst folgen ausgewählte Bauteile ihren eigenen Kanten, und zu den Nachbarn können Lücken entstehen</translation>
+            <translation>Sonst folgen ausgewählte Bauteile ihren eigenen Kanten, und zu den Nachbarn können Lücken entstehen</translation>
         </message>
         <message>
             <source>Outliers</source>
-            <translation type="vanished">Ausreißer</translation>
+            <translation>Ausreißer</translation>
         </message>
         <message>
             <source>Outliers from</source>
@@ -1265,19 +1265,19 @@
         </message>
         <message>
             <source>Part of the contours' samples that have an edge</source>
-            <translation type="vanished">Anteil der Konturpunkte, die eine Kante haben</translation>
+            <translation>Anteil der Konturpunkte, die eine Kante haben</translation>
         </message>
         <message>
             <source>Photograph</source>
-            <translation type="vanished">Foto</translation>
+            <translation>Foto</translation>
         </message>
         <message>
             <source>Photographs</source>
-            <translation type="vanished">Fotos</translation>
+            <translation>Fotos</translation>
         </message>
         <message>
             <source>Photographs with contours</source>
-            <translation type="vanished">Fotos mit Konturen</translation>
+            <translation>Fotos mit Konturen</translation>
         </message>
         <message>
             <source>Pick {index} failed: {reason}.</source>
@@ -1301,11 +1301,11 @@
         </message>
         <message>
             <source>Pipes of an IFC file</source>
-            <translation type="vanished">Rohre einer IFC-Datei</translation>
+            <translation>Rohre einer IFC-Datei</translation>
         </message>
         <message>
             <source>Pipes of selected solids</source>
-            <translation type="vanished">Rohre ausgewählter Körper</translation>
+            <translation>Rohre ausgewählter Körper</translation>
         </message>
         <message>
             <source>Pipes that are nearly level, plumb or at right angles are so</source>
@@ -1357,11 +1357,11 @@
         </message>
         <message>
             <source>RMS distance of its contours to the edges (Eq. 4) before and after</source>
-            <translation type="vanished">Mittlerer quadratischer Abstand seiner Konturen zu den Kanten (Gl. 4) vorher und nachher</translation>
+            <translation>Mittlerer quadratischer Abstand seiner Konturen zu den Kanten (Gl. 4) vorher und nachher</translation>
         </message>
         <message>
             <source>RMS px</source>
-            <translation type="vanished">RMS px</translation>
+            <translation>RMS px</translation>
         </message>
         <message>
             <source>Radius</source>
@@ -1381,7 +1381,7 @@
         </message>
         <message>
             <source>Reference</source>
-            <translation type="vanished">Bezug</translation>
+            <translation>Bezug</translation>
         </message>
         <message>
             <source>Reject</source>
@@ -1393,23 +1393,23 @@
         </message>
         <message>
             <source>Report</source>
-            <translation type="vanished">Bericht</translation>
+            <translation>Bericht</translation>
         </message>
         <message>
             <source>Reset</source>
-            <translation type="vanished">Zurücksetzen</translation>
+            <translation>Zurücksetzen</translation>
         </message>
         <message>
             <source>Residuals</source>
-            <translation type="vanished">Restabweichungen</translation>
+            <translation>Restabweichungen</translation>
         </message>
         <message>
             <source>Residuals in the photographs</source>
-            <translation type="vanished">Restabweichungen in den Fotos</translation>
+            <translation>Restabweichungen in den Fotos</translation>
         </message>
         <message>
             <source>Residuals of the last adjustment, enlarged</source>
-            <translation type="vanished">Restabweichungen der letzten Ausgleichung, vergrößert</translation>
+            <translation>Restabweichungen der letzten Ausgleichung, vergrößert</translation>
         </message>
         <message>
             <source>Restore defaults</source>
@@ -1417,39 +1417,39 @@
         </message>
         <message>
             <source>Result</source>
-            <translation type="vanished">Ergebnis</translation>
+            <translation>Ergebnis</translation>
         </message>
         <message>
             <source>Round outer faces of solids are taken for pipes; to a surface only the shortest distance is measured</source>
-            <translation type="vanished">Runde Außenflächen von Körpern gelten als Rohre; zu einer Fläche wird nur der kürzeste Abstand gemessen</translation>
+            <translation>Runde Außenflächen von Körpern gelten als Rohre; zu einer Fläche wird nur der kürzeste Abstand gemessen</translation>
         </message>
         <message>
             <source>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</source>
-            <translation type="vanished">Stränge, die fast so liegen, gelten mit wenig Gewicht als solche: Wo die Fotos etwas anderes sagen, entscheiden sie</translation>
+            <translation>Stränge, die fast so liegen, gelten mit wenig Gewicht als solche: Wo die Fotos etwas anderes sagen, entscheiden sie</translation>
         </message>
         <message>
             <source>Same place</source>
-            <translation type="vanished">Gleicher Ort</translation>
+            <translation>Gleicher Ort</translation>
         </message>
         <message>
             <source>Save as CSV ...</source>
-            <translation type="vanished">Als CSV speichern ...</translation>
+            <translation>Als CSV speichern ...</translation>
         </message>
         <message>
             <source>Save deviations</source>
-            <translation type="vanished">Abweichungen speichern</translation>
+            <translation>Abweichungen speichern</translation>
         </message>
         <message>
             <source>Search band</source>
-            <translation type="vanished">Suchband</translation>
+            <translation>Suchband</translation>
         </message>
         <message>
             <source>Select the solids in the tree or in 3D.</source>
-            <translation type="vanished">Wählen Sie die Körper im Baum oder in 3D aus.</translation>
+            <translation>Wählen Sie die Körper im Baum oder in 3D aus.</translation>
         </message>
         <message>
             <source>Selected components only</source>
-            <translation type="vanished">Nur ausgewählte Bauteile</translation>
+            <translation>Nur ausgewählte Bauteile</translation>
         </message>
         <message>
             <source>Set everything on this page to what it was at first</source>
@@ -1461,11 +1461,11 @@
         </message>
         <message>
             <source>Shift mm</source>
-            <translation type="vanished">Versatz mm</translation>
+            <translation>Versatz mm</translation>
         </message>
         <message>
             <source>Show one pixel of the photograph as one of the screen (Ctrl+1)</source>
-            <translation type="vanished">Ein Pixel des Fotos als eines des Bildschirms zeigen (Strg+1)</translation>
+            <translation>Ein Pixel des Fotos als eines des Bildschirms zeigen (Strg+1)</translation>
         </message>
         <message>
             <source>Show the next pipe of the list (digits choose directly)</source>
@@ -1473,19 +1473,19 @@
         </message>
         <message>
             <source>Show the parts of the contours that are behind something as dashed lines</source>
-            <translation type="vanished">Verdeckte Teile der Konturen gestrichelt zeigen</translation>
+            <translation>Verdeckte Teile der Konturen gestrichelt zeigen</translation>
         </message>
         <message>
             <source>Show the photographs as they are, stretched to the screen's range</source>
-            <translation type="vanished">Die Fotos zeigen, wie sie sind, auf den Bereich des Bildschirms gestreckt</translation>
+            <translation>Die Fotos zeigen, wie sie sind, auf den Bereich des Bildschirms gestreckt</translation>
         </message>
         <message>
             <source>Show the photographs whole (F)</source>
-            <translation type="vanished">Die Fotos ganz zeigen (F)</translation>
+            <translation>Die Fotos ganz zeigen (F)</translation>
         </message>
         <message>
             <source>Show the same part of the object in the middle of all photographs</source>
-            <translation type="vanished">Denselben Teil des Objekts in der Mitte aller Fotos zeigen</translation>
+            <translation>Denselben Teil des Objekts in der Mitte aller Fotos zeigen</translation>
         </message>
         <message>
             <source>Size</source>
@@ -1497,7 +1497,7 @@
         </message>
         <message>
             <source>Solids: {labels}</source>
-            <translation type="vanished">Körper: {labels}</translation>
+            <translation>Körper: {labels}</translation>
         </message>
         <message>
             <source>Something else is still being computed; wait for its end or cancel it</source>
@@ -1509,7 +1509,7 @@
         </message>
         <message>
             <source>Standard deviation of its position before and after</source>
-            <translation type="vanished">Standardabweichung seiner Lage vorher und nachher</translation>
+            <translation>Standardabweichung seiner Lage vorher und nachher</translation>
         </message>
         <message>
             <source>Standard sizes</source>
@@ -1517,7 +1517,7 @@
         </message>
         <message>
             <source>Standardised size (Baarda); 3.3 and more is a gross error</source>
-            <translation type="vanished">Normierte Größe (Baarda); ab 3,3 ist es ein grober Fehler</translation>
+            <translation>Normierte Größe (Baarda); ab 3,3 ist es ein grober Fehler</translation>
         </message>
         <message>
             <source>Station</source>
@@ -1533,27 +1533,27 @@
         </message>
         <message>
             <source>Station {station}: place ± {sigma:.2f} mm, heading ± {heading:.3f}°</source>
-            <translation type="vanished">Standpunkt {station}: Ort ± {sigma:.2f} mm, Richtung ± {heading:.3f}°</translation>
+            <translation>Standpunkt {station}: Ort ± {sigma:.2f} mm, Richtung ± {heading:.3f}°</translation>
         </message>
         <message>
             <source>Stations</source>
-            <translation type="vanished">Standpunkte</translation>
+            <translation>Standpunkte</translation>
         </message>
         <message>
             <source>Stay joined to what stays</source>
-            <translation type="vanished">Mit Bleibendem verbunden bleiben</translation>
+            <translation>Mit Bleibendem verbunden bleiben</translation>
         </message>
         <message>
             <source>Straight edges found in the photographs</source>
-            <translation type="vanished">In den Fotos gefundene gerade Kanten</translation>
+            <translation>In den Fotos gefundene gerade Kanten</translation>
         </message>
         <message>
             <source>Straight lines</source>
-            <translation type="vanished">Geraden</translation>
+            <translation>Geraden</translation>
         </message>
         <message>
             <source>Surface of selected solids</source>
-            <translation type="vanished">Oberfläche ausgewählter Körper</translation>
+            <translation>Oberfläche ausgewählter Körper</translation>
         </message>
         <message>
             <source>Tables of your own</source>
@@ -1561,7 +1561,7 @@
         </message>
         <message>
             <source>Take back what was assigned by hand</source>
-            <translation type="vanished">Von Hand Zugeordnetes zurücknehmen</translation>
+            <translation>Von Hand Zugeordnetes zurücknehmen</translation>
         </message>
         <message>
             <source>Take the chosen folder from the list; its files stay</source>
@@ -1585,7 +1585,7 @@
         </message>
         <message>
             <source>That is beside the photograph: click inside it</source>
-            <translation type="vanished">Das liegt neben dem Foto: klicken Sie hinein</translation>
+            <translation>Das liegt neben dem Foto: klicken Sie hinein</translation>
         </message>
         <message>
             <source>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous.</source>
@@ -1593,19 +1593,19 @@
         </message>
         <message>
             <source>The components have changed: adjust them again.</source>
-            <translation type="vanished">Die Bauteile haben sich geändert: Gleichen Sie sie noch einmal aus.</translation>
+            <translation>Die Bauteile haben sich geändert: Gleichen Sie sie noch einmal aus.</translation>
         </message>
         <message>
             <source>The components have changed: compare them again.</source>
-            <translation type="vanished">Die Bauteile haben sich geändert: Vergleichen Sie sie noch einmal.</translation>
+            <translation>Die Bauteile haben sich geändert: Vergleichen Sie sie noch einmal.</translation>
         </message>
         <message>
             <source>The components have changed: put the stations together again.</source>
-            <translation type="vanished">Die Bauteile haben sich geändert: Führen Sie die Standpunkte noch einmal zusammen.</translation>
+            <translation>Die Bauteile haben sich geändert: Führen Sie die Standpunkte noch einmal zusammen.</translation>
         </message>
         <message>
             <source>The distance in standard deviations; 4 and more does not fit</source>
-            <translation type="vanished">Der Abstand in Standardabweichungen; ab 4 passt er nicht</translation>
+            <translation>Der Abstand in Standardabweichungen; ab 4 passt er nicht</translation>
         </message>
         <message>
             <source>The flange facing it, too</source>
@@ -1613,11 +1613,15 @@
         </message>
         <message>
             <source>The model as designed</source>
-            <translation type="vanished">Das geplante Modell</translation>
+            <translation>Das geplante Modell</translation>
         </message>
         <message>
             <source>The photo window shows the station's photographs side by side. Turn the wheel to zoom at the pointer, drag with the middle button to move the photographs.</source>
             <translation>Das Fotofenster zeigt die Fotos des Standpunkts nebeneinander. Das Mausrad zoomt am Mauszeiger, mit gedrückter mittlerer Taste verschieben Sie die Fotos.</translation>
+        </message>
+        <message>
+            <source>The photographs are not shown: {packages} is missing</source>
+            <translation>Die Fotos werden nicht gezeigt: {packages} fehlt</translation>
         </message>
         <message>
             <source>The pipes that the clicks can mean, the likeliest first: outside diameter, distance, and the quality, which is the mean distance of the image's edges from the contours</source>
@@ -1629,19 +1633,19 @@
         </message>
         <message>
             <source>The report's heading, such as the project's name</source>
-            <translation type="vanished">Die Überschrift des Berichts, etwa der Name des Projekts</translation>
+            <translation>Die Überschrift des Berichts, etwa der Name des Projekts</translation>
         </message>
         <message>
             <source>The station fits at several places: look at each in the 3D view and choose</source>
-            <translation type="vanished">Der Standpunkt passt an mehreren Orten: Sehen Sie sich jeden in der 3D-Ansicht an und wählen Sie</translation>
+            <translation>Der Standpunkt passt an mehreren Orten: Sehen Sie sich jeden in der 3D-Ansicht an und wählen Sie</translation>
         </message>
         <message>
             <source>The station that stays where it is</source>
-            <translation type="vanished">Der Standpunkt, der bleibt, wo er ist</translation>
+            <translation>Der Standpunkt, der bleibt, wo er ist</translation>
         </message>
         <message>
             <source>The table for a spreadsheet</source>
-            <translation type="vanished">Die Tabelle für eine Tabellenkalkulation</translation>
+            <translation>Die Tabelle für eine Tabellenkalkulation</translation>
         </message>
         <message>
             <source>There is no flange to accept yet.</source>
@@ -1657,7 +1661,7 @@
         </message>
         <message>
             <source>They make most of the file's size</source>
-            <translation type="vanished">Sie machen den größten Teil der Datei aus</translation>
+            <translation>Sie machen den größten Teil der Datei aus</translation>
         </message>
         <message>
             <source>Thicker pipes are not looked for</source>
@@ -1681,7 +1685,7 @@
         </message>
         <message>
             <source>Turn °</source>
-            <translation type="vanished">Drehung °</translation>
+            <translation>Drehung °</translation>
         </message>
         <message>
             <source>Type</source>
@@ -1697,11 +1701,11 @@
         </message>
         <message>
             <source>Use</source>
-            <translation type="vanished">Nutzung</translation>
+            <translation>Nutzung</translation>
         </message>
         <message>
             <source>Warnings</source>
-            <translation type="vanished">Warnungen</translation>
+            <translation>Warnungen</translation>
         </message>
         <message>
             <source>What a click in a photograph means</source>
@@ -1709,15 +1713,15 @@
         </message>
         <message>
             <source>What and how</source>
-            <translation type="vanished">Was und wie</translation>
+            <translation>Was und wie</translation>
         </message>
         <message>
             <source>What and where to</source>
-            <translation type="vanished">Was und wohin</translation>
+            <translation>Was und wohin</translation>
         </message>
         <message>
             <source>What does not fit</source>
-            <translation type="vanished">Was nicht passt</translation>
+            <translation>Was nicht passt</translation>
         </message>
         <message>
             <source>What is looked for</source>
@@ -1725,11 +1729,11 @@
         </message>
         <message>
             <source>What the colours of the contours tell</source>
-            <translation type="vanished">Was die Farben der Konturen aussagen</translation>
+            <translation>Was die Farben der Konturen aussagen</translation>
         </message>
         <message>
             <source>What they share</source>
-            <translation type="vanished">Gemeinsames</translation>
+            <translation>Gemeinsames</translation>
         </message>
         <message>
             <source>What was found; ticked ones are accepted together</source>
@@ -1737,19 +1741,19 @@
         </message>
         <message>
             <source>Where the model has other coordinates than the document; else both are compared as they stand</source>
-            <translation type="vanished">Wenn das Modell andere Koordinaten hat als das Dokument; sonst werden beide verglichen, wie sie stehen</translation>
+            <translation>Wenn das Modell andere Koordinaten hat als das Dokument; sonst werden beide verglichen, wie sie stehen</translation>
         </message>
         <message>
             <source>Where the point under the pointer lies in the other photographs, from near to far</source>
-            <translation type="vanished">Wo der Punkt unter dem Mauszeiger in den anderen Fotos liegt, von nah bis fern</translation>
+            <translation>Wo der Punkt unter dem Mauszeiger in den anderen Fotos liegt, von nah bis fern</translation>
         </message>
         <message>
             <source>Where the search does not find it: say that the two selected components, one of each station, are the same</source>
-            <translation type="vanished">Wo die Suche es nicht findet: angeben, dass die beiden ausgewählten Bauteile, je eines pro Standpunkt, dasselbe sind</translation>
+            <translation>Wo die Suche es nicht findet: angeben, dass die beiden ausgewählten Bauteile, je eines pro Standpunkt, dasselbe sind</translation>
         </message>
         <message>
             <source>Whether it still counts</source>
-            <translation type="vanished">Ob es noch zählt</translation>
+            <translation>Ob es noch zählt</translation>
         </message>
         <message>
             <source>Which diameters are possible: those of the standard, any, or a certain one</source>
@@ -1769,7 +1773,7 @@
         </message>
         <message>
             <source>Written: {path}</source>
-            <translation type="vanished">Geschrieben: {path}</translation>
+            <translation>Geschrieben: {path}</translation>
         </message>
         <message>
             <source>all</source>
@@ -1777,11 +1781,11 @@
         </message>
         <message>
             <source>all ({count})</source>
-            <translation type="vanished">alle ({count})</translation>
+            <translation>alle ({count})</translation>
         </message>
         <message>
             <source>all components ({count})</source>
-            <translation type="vanished">alle Bauteile ({count})</translation>
+            <translation>alle Bauteile ({count})</translation>
         </message>
         <message>
             <source>always an edge</source>
@@ -1797,7 +1801,7 @@
         </message>
         <message>
             <source>another task is open in the task panel</source>
-            <translation type="vanished">im Aufgabenbereich ist eine andere Aufgabe offen</translation>
+            <translation>im Aufgabenbereich ist eine andere Aufgabe offen</translation>
         </message>
         <message>
             <source>any (free)</source>
@@ -1809,7 +1813,7 @@
         </message>
         <message>
             <source>beyond</source>
-            <translation type="vanished">darüber</translation>
+            <translation>darüber</translation>
         </message>
         <message>
             <source>blind</source>
@@ -1817,47 +1821,47 @@
         </message>
         <message>
             <source>by kind</source>
-            <translation type="vanished">nach Art</translation>
+            <translation>nach Art</translation>
         </message>
         <message>
             <source>by quality</source>
-            <translation type="vanished">nach Güte</translation>
+            <translation>nach Güte</translation>
         </message>
         <message>
             <source>choose the model as designed</source>
-            <translation type="vanished">wählen Sie das geplante Modell</translation>
+            <translation>wählen Sie das geplante Modell</translation>
         </message>
         <message>
             <source>closed, for what it worked on was deleted</source>
-            <translation type="vanished">geschlossen, denn woran gearbeitet wurde, ist gelöscht</translation>
+            <translation>geschlossen, denn woran gearbeitet wurde, ist gelöscht</translation>
         </message>
         <message>
             <source>comparing with the model</source>
-            <translation type="vanished">Vergleich mit dem Modell</translation>
+            <translation>Vergleich mit dem Modell</translation>
         </message>
         <message>
             <source>converged</source>
-            <translation type="vanished">konvergiert</translation>
+            <translation>konvergiert</translation>
         </message>
         <message>
             <source>counts</source>
-            <translation type="vanished">zählt</translation>
+            <translation>zählt</translation>
         </message>
         <message>
             <source>designed {designed:.1f} mm, difference {difference:+.1f} mm</source>
-            <translation type="vanished">geplant {designed:.1f} mm, Unterschied {difference:+.1f} mm</translation>
+            <translation>geplant {designed:.1f} mm, Unterschied {difference:+.1f} mm</translation>
         </message>
         <message>
             <source>did not converge</source>
-            <translation type="vanished">nicht konvergiert</translation>
+            <translation>nicht konvergiert</translation>
         </message>
         <message>
             <source>does not fit</source>
-            <translation type="vanished">passt nicht</translation>
+            <translation>passt nicht</translation>
         </message>
         <message>
             <source>exact</source>
-            <translation type="vanished">genau</translation>
+            <translation>genau</translation>
         </message>
         <message>
             <source>finding edges</source>
@@ -1865,23 +1869,23 @@
         </message>
         <message>
             <source>finding edges...</source>
-            <translation type="vanished">Kanten werden gesucht ...</translation>
+            <translation>Kanten werden gesucht ...</translation>
         </message>
         <message>
             <source>finish it first</source>
-            <translation type="vanished">beenden Sie es zuerst</translation>
+            <translation>beenden Sie es zuerst</translation>
         </message>
         <message>
             <source>finish or close it first</source>
-            <translation type="vanished">beenden oder schließen Sie sie zuerst</translation>
+            <translation>beenden oder schließen Sie sie zuerst</translation>
         </message>
         <message>
             <source>fixed</source>
-            <translation type="vanished">festgelegt</translation>
+            <translation>festgelegt</translation>
         </message>
         <message>
             <source>follows from its pipes</source>
-            <translation type="vanished">folgt aus seinen Rohren</translation>
+            <translation>folgt aus seinen Rohren</translation>
         </message>
         <message>
             <source>free</source>
@@ -1889,27 +1893,31 @@
         </message>
         <message>
             <source>give one</source>
-            <translation type="vanished">geben Sie einen an</translation>
+            <translation>geben Sie einen an</translation>
         </message>
         <message>
             <source>grey {value}</source>
-            <translation type="vanished">Grauwert {value}</translation>
+            <translation>Grauwert {value}</translation>
         </message>
         <message>
             <source>is</source>
-            <translation type="vanished">ist</translation>
+            <translation>ist</translation>
         </message>
         <message>
             <source>its document was closed</source>
-            <translation type="vanished">sein Dokument wurde geschlossen</translation>
+            <translation>sein Dokument wurde geschlossen</translation>
         </message>
         <message>
             <source>its photographs are missing</source>
             <translation type="vanished">seine Fotos fehlen</translation>
         </message>
         <message>
+            <source>last seen in {folder}</source>
+            <translation>zuletzt in {folder}</translation>
+        </message>
+        <message>
             <source>left out</source>
-            <translation type="vanished">ausgeschlossen</translation>
+            <translation>ausgeschlossen</translation>
         </message>
         <message>
             <source>loose plate</source>
@@ -1921,31 +1929,31 @@
         </message>
         <message>
             <source>model.ifc</source>
-            <translation type="vanished">modell.ifc</translation>
+            <translation>modell.ifc</translation>
         </message>
         <message>
             <source>no component is selected</source>
-            <translation type="vanished">kein Bauteil ist ausgewählt</translation>
+            <translation>kein Bauteil ist ausgewählt</translation>
         </message>
         <message>
             <source>no solid is selected</source>
-            <translation type="vanished">kein Körper ist ausgewählt</translation>
+            <translation>kein Körper ist ausgewählt</translation>
         </message>
         <message>
             <source>not determined</source>
-            <translation type="vanished">nicht bestimmt</translation>
+            <translation>nicht bestimmt</translation>
         </message>
         <message>
             <source>not trusted</source>
-            <translation type="vanished">ohne Gewicht</translation>
+            <translation>ohne Gewicht</translation>
         </message>
         <message>
             <source>not two components of two stations are selected</source>
-            <translation type="vanished">es sind nicht zwei Bauteile zweier Standpunkte ausgewählt</translation>
+            <translation>es sind nicht zwei Bauteile zweier Standpunkte ausgewählt</translation>
         </message>
         <message>
             <source>nothing was put together yet</source>
-            <translation type="vanished">es wurde noch nichts zusammengeführt</translation>
+            <translation>es wurde noch nichts zusammengeführt</translation>
         </message>
         <message>
             <source>of the standard</source>
@@ -1953,11 +1961,11 @@
         </message>
         <message>
             <source>open it again</source>
-            <translation type="vanished">öffnen Sie es wieder</translation>
+            <translation>öffnen Sie es wieder</translation>
         </message>
         <message>
             <source>open one, or import a station first</source>
-            <translation type="vanished">öffnen Sie eines oder importieren Sie zuerst einen Standpunkt</translation>
+            <translation>öffnen Sie eines oder importieren Sie zuerst einen Standpunkt</translation>
         </message>
         <message>
             <source>plate</source>
@@ -1965,23 +1973,23 @@
         </message>
         <message>
             <source>press Adjust first</source>
-            <translation type="vanished">drücken Sie zuerst „Ausgleichen“</translation>
+            <translation>drücken Sie zuerst „Ausgleichen“</translation>
         </message>
         <message>
             <source>press Find What They Share first</source>
-            <translation type="vanished">drücken Sie zuerst „Gemeinsames suchen“</translation>
+            <translation>drücken Sie zuerst „Gemeinsames suchen“</translation>
         </message>
         <message>
             <source>px in photographs, mm or degrees of conditions</source>
-            <translation type="vanished">px in Fotos, mm oder Grad bei Bedingungen</translation>
+            <translation>px in Fotos, mm oder Grad bei Bedingungen</translation>
         </message>
         <message>
             <source>q px</source>
-            <translation type="vanished">q px</translation>
+            <translation>q px</translation>
         </message>
         <message>
             <source>reading...</source>
-            <translation type="vanished">wird gelesen ...</translation>
+            <translation>wird gelesen ...</translation>
         </message>
         <message>
             <source>say where they are in its photo window</source>
@@ -1989,31 +1997,31 @@
         </message>
         <message>
             <source>select one of each (Ctrl and click)</source>
-            <translation type="vanished">wählen Sie je eines aus (Strg und Klick)</translation>
+            <translation>wählen Sie je eines aus (Strg und Klick)</translation>
         </message>
         <message>
             <source>select some, or adjust all</source>
-            <translation type="vanished">wählen Sie welche aus oder gleichen Sie alle aus</translation>
+            <translation>wählen Sie welche aus oder gleichen Sie alle aus</translation>
         </message>
         <message>
             <source>select some, or compare all</source>
-            <translation type="vanished">wählen Sie welche aus oder vergleichen Sie alle</translation>
+            <translation>wählen Sie welche aus oder vergleichen Sie alle</translation>
         </message>
         <message>
             <source>select some, or export all</source>
-            <translation type="vanished">wählen Sie welche aus oder exportieren Sie alle</translation>
+            <translation>wählen Sie welche aus oder exportieren Sie alle</translation>
         </message>
         <message>
             <source>select the solids as designed in the tree or in 3D</source>
-            <translation type="vanished">wählen Sie die geplanten Körper im Baum oder in 3D aus</translation>
+            <translation>wählen Sie die geplanten Körper im Baum oder in 3D aus</translation>
         </message>
         <message>
             <source>selected ({count})</source>
-            <translation type="vanished">ausgewählte ({count})</translation>
+            <translation>ausgewählte ({count})</translation>
         </message>
         <message>
             <source>selected components ({count})</source>
-            <translation type="vanished">ausgewählte Bauteile ({count})</translation>
+            <translation>ausgewählte Bauteile ({count})</translation>
         </message>
         <message>
             <source>slip-on</source>
@@ -2021,19 +2029,19 @@
         </message>
         <message>
             <source>there is no IFC file</source>
-            <translation type="vanished">es gibt keine IFC-Datei</translation>
+            <translation>es gibt keine IFC-Datei</translation>
         </message>
         <message>
             <source>there is no document</source>
-            <translation type="vanished">es gibt kein Dokument</translation>
+            <translation>es gibt kein Dokument</translation>
         </message>
         <message>
             <source>there is no file name</source>
-            <translation type="vanished">es gibt keinen Dateinamen</translation>
+            <translation>es gibt keinen Dateinamen</translation>
         </message>
         <message>
             <source>there is no result yet</source>
-            <translation type="vanished">es gibt noch kein Ergebnis</translation>
+            <translation>es gibt noch kein Ergebnis</translation>
         </message>
         <message>
             <source>threaded</source>
@@ -2045,11 +2053,11 @@
         </message>
         <message>
             <source>w</source>
-            <translation type="vanished">w</translation>
+            <translation>w</translation>
         </message>
         <message>
             <source>weak</source>
-            <translation type="vanished">schwach</translation>
+            <translation>schwach</translation>
         </message>
         <message>
             <source>weld neck</source>
@@ -2057,19 +2065,19 @@
         </message>
         <message>
             <source>within their tolerances</source>
-            <translation type="vanished">innerhalb ihrer Toleranzen</translation>
+            <translation>innerhalb ihrer Toleranzen</translation>
         </message>
         <message>
             <source>written: {path}</source>
-            <translation type="vanished">geschrieben: {path}</translation>
+            <translation>geschrieben: {path}</translation>
         </message>
         <message>
             <source>{component} is weakly placed (σ {sigma:.1f} mm): {reason}</source>
-            <translation type="vanished">{component} liegt unsicher (σ {sigma:.1f} mm): {reason}</translation>
+            <translation>{component} liegt unsicher (σ {sigma:.1f} mm): {reason}</translation>
         </message>
         <message>
             <source>{count} beyond</source>
-            <translation type="vanished">{count} darüber</translation>
+            <translation>{count} darüber</translation>
         </message>
         <message>
             <source>{count} found. Click on one to choose it.</source>
@@ -2077,15 +2085,15 @@
         </message>
         <message>
             <source>{count} up to {limit:g} mm</source>
-            <translation type="vanished">{count} bis {limit:g} mm</translation>
+            <translation>{count} bis {limit:g} mm</translation>
         </message>
         <message>
             <source>{count} within {limit:g} mm</source>
-            <translation type="vanished">{count} innerhalb von {limit:g} mm</translation>
+            <translation>{count} innerhalb von {limit:g} mm</translation>
         </message>
         <message>
             <source>{count} without counterpart</source>
-            <translation type="vanished">{count} ohne Gegenstück</translation>
+            <translation>{count} ohne Gegenstück</translation>
         </message>
         <message>
             <source>{diameter:g} mm, as entered</source>
@@ -2093,15 +2101,19 @@
         </message>
         <message>
             <source>{station} ({count} components)</source>
-            <translation type="vanished">{station} ({count} Bauteile)</translation>
+            <translation>{station} ({count} Bauteile)</translation>
         </message>
         <message>
             <source>{station} - photographs</source>
-            <translation type="vanished">{station} - Fotos</translation>
+            <translation>{station} - Fotos</translation>
         </message>
         <message>
             <source>{station} in {reference}, place {place}: {count} components fit (score {score:.1f})</source>
-            <translation type="vanished">{station} in {reference}, Ort {place}: {count} Bauteile passen (Wertung {score:.1f})</translation>
+            <translation>{station} in {reference}, Ort {place}: {count} Bauteile passen (Wertung {score:.1f})</translation>
+        </message>
+        <message>
+            <source>{station}: these photographs are not where they were</source>
+            <translation>{station}: diese Fotos sind nicht mehr, wo sie waren</translation>
         </message>
         <message>
             <source>{what} failed ({error}); the report view has the details, please report them</source>
@@ -2121,23 +2133,23 @@
         </message>
         <message>
             <source>Δx mm</source>
-            <translation type="vanished">Δx mm</translation>
+            <translation>Δx mm</translation>
         </message>
         <message>
             <source>Δy mm</source>
-            <translation type="vanished">Δy mm</translation>
+            <translation>Δy mm</translation>
         </message>
         <message>
             <source>Δz mm</source>
-            <translation type="vanished">Δz mm</translation>
+            <translation>Δz mm</translation>
         </message>
         <message>
             <source>σ</source>
-            <translation type="vanished">σ</translation>
+            <translation>σ</translation>
         </message>
         <message>
             <source>σ mm</source>
-            <translation type="vanished">σ mm</translation>
+            <translation>σ mm</translation>
         </message>
     </context>
     <context>
@@ -2145,6 +2157,10 @@
         <message>
             <source>Pipe Workbench help</source>
             <translation>Hilfe zur Pipe Workbench</translation>
+        </message>
+        <message>
+            <source>Pipe adjustment</source>
+            <translation>Rohre ausgleichen</translation>
         </message>
         <message>
             <source>Pipe measuring</source>

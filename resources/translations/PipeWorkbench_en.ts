@@ -40,8 +40,8 @@
             <translation>Draw the bolts, through a partner of the same thickness</translation>
         </message>
         <message>
-            <source>Files of the photographs</source>
-            <translation>Files of the photographs</translation>
+            <source>Files of the photographs, relative to the document</source>
+            <translation>Files of the photographs, relative to the document</translation>
         </message>
         <message>
             <source>Flanges of the same dimensions, which images cannot tell apart</source>
@@ -84,8 +84,12 @@
             <translation>Index of the pick that made the component, -1 for none</translation>
         </message>
         <message>
-            <source>Keep the component as it is when its pick is reconstructed again</source>
-            <translation>Keep the component as it is when its pick is reconstructed again</translation>
+            <source>Keep the component where and as it is, whatever is adjusted, measured again or joined to it</source>
+            <translation>Keep the component where and as it is, whatever is adjusted, measured again or joined to it</translation>
+        </message>
+        <message>
+            <source>Keep the photographs inside the document, which makes its file larger</source>
+            <translation>Keep the photographs inside the document, which makes its file larger</translation>
         </message>
         <message>
             <source>Length along the axis</source>
@@ -104,6 +108,10 @@
             <translation>Name in exchange files</translation>
         </message>
         <message>
+            <source>Name of the project in reports and exchange files</source>
+            <translation>Name of the project in reports and exchange files</translation>
+        </message>
+        <message>
             <source>Names of the cameras</source>
             <translation>Names of the cameras</translation>
         </message>
@@ -114,6 +122,10 @@
         <message>
             <source>Number of bolts; 0 where it is not known</source>
             <translation>Number of bolts; 0 where it is not known</translation>
+        </message>
+        <message>
+            <source>Numbers of the ends that are joined to the own ones</source>
+            <translation>Numbers of the ends that are joined to the own ones</translation>
         </message>
         <message>
             <source>Of the narrow end across the axis, where it is eccentric</source>
@@ -132,8 +144,12 @@
             <translation>Outside diameter of the narrow end</translation>
         </message>
         <message>
-            <source>PN</source>
-            <translation>PN</translation>
+            <source>Pressure class as a number</source>
+            <translation>Pressure class as a number</translation>
+        </message>
+        <message>
+            <source>Pressure class of the standards</source>
+            <translation>Pressure class of the standards</translation>
         </message>
         <message>
             <source>RMS distance to the image edges in pixels (Eq. 4)</source>
@@ -192,12 +208,24 @@
             <translation>The ends do not lie on one axis</translation>
         </message>
         <message>
+            <source>The georeference as exchange files have it (JSON)</source>
+            <translation>The georeference as exchange files have it (JSON)</translation>
+        </message>
+        <message>
             <source>The images do not support the pipe well</source>
             <translation>The images do not support the pipe well</translation>
         </message>
         <message>
-            <source>The pipeline without its components (JSON)</source>
-            <translation>The pipeline without its components (JSON)</translation>
+            <source>The pipeline without its components (JSON); of its joints those hold that are linked</source>
+            <translation>The pipeline without its components (JSON); of its joints those hold that are linked</translation>
+        </message>
+        <message>
+            <source>The plant's coordinate system; empty where it is not known</source>
+            <translation>The plant's coordinate system; empty where it is not known</translation>
+        </message>
+        <message>
+            <source>These flanges as exchange files have them (JSON)</source>
+            <translation>These flanges as exchange files have them (JSON)</translation>
         </message>
         <message>
             <source>Thickness C of the plate, raised face included</source>
@@ -208,8 +236,8 @@
             <translation>Type of EN 1092-1 (01 plate, 05 blind, 11 weld neck, ...)</translation>
         </message>
         <message>
-            <source>Type of the standard (2D, 3D, 5D)</source>
-            <translation>Type of the standard (2D, 3D, 5D)</translation>
+            <source>Type of the standard; choosing one sets the bend radius</source>
+            <translation>Type of the standard; choosing one sets the bend radius</translation>
         </message>
         <message>
             <source>Version of this object's properties</source>
@@ -220,12 +248,54 @@
             <translation>Wall thickness; 0 where it is not known</translation>
         </message>
         <message>
-            <source>Which ends are joined: component and number of its end</source>
-            <translation>Which ends are joined: component and number of its end</translation>
+            <source>What is joined to a component follows when the component is changed</source>
+            <translation>What is joined to a component follows when the component is changed</translation>
         </message>
         <message>
-            <source>station.json with the calibration of the cameras</source>
-            <translation>station.json with the calibration of the cameras</translation>
+            <source>What station.json holds</source>
+            <translation>What station.json holds</translation>
+        </message>
+        <message>
+            <source>What the colours of the components say</source>
+            <translation>What the colours of the components say</translation>
+        </message>
+        <message>
+            <source>Where station.json and the photographs were found last</source>
+            <translation>Where station.json and the photographs were found last</translation>
+        </message>
+        <message>
+            <source>Where the first station's frame lies in the plant</source>
+            <translation>Where the first station's frame lies in the plant</translation>
+        </message>
+        <message>
+            <source>Where the station's level frame lies in the document's frame</source>
+            <translation>Where the station's level frame lies in the document's frame</translation>
+        </message>
+        <message>
+            <source>station.json with the calibration, relative to the document</source>
+            <translation>station.json with the calibration, relative to the document</translation>
+        </message>
+    </context>
+    <context>
+        <name>PipeWB_Adjust</name>
+        <message>
+            <source>Adjust</source>
+            <translation>Adjust</translation>
+        </message>
+        <message>
+            <source>Adjust pipes and fittings, all or those selected, to the edges of all photographs, with their joints and standard sizes</source>
+            <translation>Adjust pipes and fittings, all or those selected, to the edges of all photographs, with their joints and standard sizes</translation>
+        </message>
+    </context>
+    <context>
+        <name>PipeWB_Deviations</name>
+        <message>
+            <source>Deviations</source>
+            <translation>Deviations</translation>
+        </message>
+        <message>
+            <source>Measure how pipes and fittings deviate from a design: an IFC model, or solids of the document</source>
+            <translation>Measure how pipes and fittings deviate from a design: an IFC model, or solids of the document</translation>
         </message>
     </context>
     <context>
@@ -246,8 +316,8 @@
             <translation>Export</translation>
         </message>
         <message>
-            <source>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV or as a picture</source>
-            <translation>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV or as a picture</translation>
+            <source>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV, as a report or as a picture</source>
+            <translation>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV, as a report or as a picture</translation>
         </message>
     </context>
     <context>
@@ -259,6 +329,17 @@
         <message>
             <source>Import the photographs and the calibration of a station (station.json)</source>
             <translation>Import the photographs and the calibration of a station (station.json)</translation>
+        </message>
+    </context>
+    <context>
+        <name>PipeWB_MergeStations</name>
+        <message>
+            <source>Merge Stations</source>
+            <translation>Merge Stations</translation>
+        </message>
+        <message>
+            <source>Put several stations together over the pipes and fittings they share, and adjust them over all photographs</source>
+            <translation>Put several stations together over the pipes and fittings they share, and adjust them over all photographs</translation>
         </message>
     </context>
     <context>
@@ -295,7 +376,38 @@
         </message>
     </context>
     <context>
+        <name>PipeWB_Report</name>
+        <message>
+            <source>Report</source>
+            <translation>Report</translation>
+        </message>
+        <message>
+            <source>Write a report of what was measured and how well, with charts and photographs, and open it in the browser</source>
+            <translation>Write a report of what was measured and how well, with charts and photographs, and open it in the browser</translation>
+        </message>
+    </context>
+    <context>
         <name>PipeWorkbench</name>
+        <message>
+            <source>'{panel}' has results that are not applied. Close it without applying them?</source>
+            <translation>'{panel}' has results that are not applied. Close it without applying them?</translation>
+        </message>
+        <message>
+            <source>'{panel}' is still open</source>
+            <translation>'{panel}' is still open</translation>
+        </message>
+        <message>
+            <source>&lt;b&gt;Station {frame}&lt;/b&gt;: σ₀ {sigma0}, edges ± {sigma} px, redundancy {redundancy}, {count} iterations, {ended}</source>
+            <translation>&lt;b&gt;Station {frame}&lt;/b&gt;: σ₀ {sigma0}, edges ± {sigma} px, redundancy {redundancy}, {count} iterations, {ended}</translation>
+        </message>
+        <message>
+            <source>&lt;b&gt;{stations}&lt;/b&gt; become one: {pairs} pairs, {count} components, σ₀ {sigma0}</source>
+            <translation>&lt;b&gt;{stations}&lt;/b&gt; become one: {pairs} pairs, {count} components, σ₀ {sigma0}</translation>
+        </message>
+        <message>
+            <source>A file that is there is replaced</source>
+            <translation>A file that is there is replaced</translation>
+        </message>
         <message>
             <source>A folder with tables of your own</source>
             <translation>A folder with tables of your own</translation>
@@ -325,12 +437,40 @@
             <translation>Add a folder with tables</translation>
         </message>
         <message>
+            <source>Adjust</source>
+            <translation>Adjust</translation>
+        </message>
+        <message>
             <source>Adjust everything</source>
             <translation>Adjust everything</translation>
         </message>
         <message>
+            <source>Adjust over all photographs</source>
+            <translation>Adjust over all photographs</translation>
+        </message>
+        <message>
             <source>Adjustment</source>
             <translation>Adjustment</translation>
+        </message>
+        <message>
+            <source>All components and the stations' places at once; takes some seconds per station</source>
+            <translation>All components and the stations' places at once; takes some seconds per station</translation>
+        </message>
+        <message>
+            <source>All that are checked are merged into the frame of the reference</source>
+            <translation>All that are checked are merged into the frame of the reference</translation>
+        </message>
+        <message>
+            <source>An IFC model with the pipes as designed, as IfcPipeSegment</source>
+            <translation>An IFC model with the pipes as designed, as IfcPipeSegment</translation>
+        </message>
+        <message>
+            <source>An arrow from each contour point that counts to its edge, enlarged by the window's slider</source>
+            <translation>An arrow from each contour point that counts to its edge, enlarged by the window's slider</translation>
+        </message>
+        <message>
+            <source>Angle °</source>
+            <translation>Angle °</translation>
         </message>
         <message>
             <source>Approximate from a deviation of</source>
@@ -341,8 +481,52 @@
             <translation>Approximate pipe</translation>
         </message>
         <message>
+            <source>As built</source>
+            <translation>As built</translation>
+        </message>
+        <message>
+            <source>As built; in red where the design has another, which the tooltip tells</source>
+            <translation>As built; in red where the design has another, which the tooltip tells</translation>
+        </message>
+        <message>
+            <source>As designed</source>
+            <translation>As designed</translation>
+        </message>
+        <message>
+            <source>Assign Selected</source>
+            <translation>Assign Selected</translation>
+        </message>
+        <message>
+            <source>Assigned by hand: {pairs}</source>
+            <translation>Assigned by hand: {pairs}</translation>
+        </message>
+        <message>
             <source>Bad</source>
             <translation>Bad</translation>
+        </message>
+        <message>
+            <source>Between both after the adjustment of the stations' places; of pipes the larger of both ends</source>
+            <translation>Between both after the adjustment of the stations' places; of pipes the larger of both ends</translation>
+        </message>
+        <message>
+            <source>Between both axes</source>
+            <translation>Between both axes</translation>
+        </message>
+        <message>
+            <source>Between the faces of two flanges that are bolted together</source>
+            <translation>Between the faces of two flanges that are bolted together</translation>
+        </message>
+        <message>
+            <source>Brightens the dark parts to the right, darkens to the left</source>
+            <translation>Brightens the dark parts to the right, darkens to the left</translation>
+        </message>
+        <message>
+            <source>Brightness</source>
+            <translation>Brightness</translation>
+        </message>
+        <message>
+            <source>By</source>
+            <translation>By</translation>
         </message>
         <message>
             <source>Cancel</source>
@@ -355,6 +539,22 @@
         <message>
             <source>Cap</source>
             <translation>Cap</translation>
+        </message>
+        <message>
+            <source>Choose folder and name</source>
+            <translation>Choose folder and name</translation>
+        </message>
+        <message>
+            <source>Choose one of the places it fits at ...</source>
+            <translation>Choose one of the places it fits at ...</translation>
+        </message>
+        <message>
+            <source>Choose the file</source>
+            <translation>Choose the file</translation>
+        </message>
+        <message>
+            <source>Choose the folder that the photographs are in now</source>
+            <translation>Choose the folder that the photographs are in now</translation>
         </message>
         <message>
             <source>Choose the tool and click on both edges of a pipe in one photograph, or once inside it. The proposed pipe is drawn into all photographs; Enter accepts it, digits choose another proposal, Esc steps back.</source>
@@ -377,8 +577,88 @@
             <translation>Colours</translation>
         </message>
         <message>
+            <source>Colours in 3D</source>
+            <translation>Colours in 3D</translation>
+        </message>
+        <message>
+            <source>Colours of the contours</source>
+            <translation>Colours of the contours</translation>
+        </message>
+        <message>
+            <source>Colours of the contours and length of the residuals</source>
+            <translation>Colours of the contours and length of the residuals</translation>
+        </message>
+        <message>
+            <source>Compare</source>
+            <translation>Compare</translation>
+        </message>
+        <message>
+            <source>Compare with</source>
+            <translation>Compare with</translation>
+        </message>
+        <message>
+            <source>Component</source>
+            <translation>Component</translation>
+        </message>
+        <message>
+            <source>Components</source>
+            <translation>Components</translation>
+        </message>
+        <message>
+            <source>Components that are fixed, or not selected, stay where they are</source>
+            <translation>Components that are fixed, or not selected, stay where they are</translation>
+        </message>
+        <message>
+            <source>Compute the adjustment; the document stays as it is until you apply it</source>
+            <translation>Compute the adjustment; the document stays as it is until you apply it</translation>
+        </message>
+        <message>
             <source>Computer</source>
             <translation>Computer</translation>
+        </message>
+        <message>
+            <source>Contours</source>
+            <translation>Contours</translation>
+        </message>
+        <message>
+            <source>Contours of the pipes and fittings</source>
+            <translation>Contours of the pipes and fittings</translation>
+        </message>
+        <message>
+            <source>Contrast</source>
+            <translation>Contrast</translation>
+        </message>
+        <message>
+            <source>Contrast and brightness of the photographs</source>
+            <translation>Contrast and brightness of the photographs</translation>
+        </message>
+        <message>
+            <source>Contrast of the photographs</source>
+            <translation>Contrast of the photographs</translation>
+        </message>
+        <message>
+            <source>Dash what is hidden</source>
+            <translation>Dash what is hidden</translation>
+        </message>
+        <message>
+            <source>Deviations</source>
+            <translation>Deviations</translation>
+        </message>
+        <message>
+            <source>Diameter mm</source>
+            <translation>Diameter mm</translation>
+        </message>
+        <message>
+            <source>Diameters, bend radii and flange dimensions of standards; sizes that are no standard's are always measured</source>
+            <translation>Diameters, bend radii and flange dimensions of standards; sizes that are no standard's are always measured</translation>
+        </message>
+        <message>
+            <source>Display</source>
+            <translation>Display</translation>
+        </message>
+        <message>
+            <source>Distance mm</source>
+            <translation>Distance mm</translation>
         </message>
         <message>
             <source>Distance of the farthest pipes from the cameras</source>
@@ -393,12 +673,32 @@
             <translation>Down</translation>
         </message>
         <message>
+            <source>Edges</source>
+            <translation>Edges</translation>
+        </message>
+        <message>
+            <source>Edges %</source>
+            <translation>Edges %</translation>
+        </message>
+        <message>
+            <source>Edges found in the photographs, with subpixel accuracy</source>
+            <translation>Edges found in the photographs, with subpixel accuracy</translation>
+        </message>
+        <message>
+            <source>Edges within</source>
+            <translation>Edges within</translation>
+        </message>
+        <message>
             <source>Elbow</source>
             <translation>Elbow</translation>
         </message>
         <message>
             <source>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</source>
             <translation>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</translation>
+        </message>
+        <message>
+            <source>Else all components are compared</source>
+            <translation>Else all components are compared</translation>
         </message>
         <message>
             <source>End the tour</source>
@@ -409,12 +709,20 @@
             <translation>Ends that face each other and are not farther apart are joined</translation>
         </message>
         <message>
+            <source>Enlarge the pixels around the pointer (L)</source>
+            <translation>Enlarge the pixels around the pointer (L)</translation>
+        </message>
+        <message>
             <source>Exactly as in the standard</source>
             <translation>Exactly as in the standard</translation>
         </message>
         <message>
             <source>Example project</source>
             <translation>Example project</translation>
+        </message>
+        <message>
+            <source>Export</source>
+            <translation>Export</translation>
         </message>
         <message>
             <source>Export it</source>
@@ -429,16 +737,52 @@
             <translation>Fair up to</translation>
         </message>
         <message>
+            <source>File</source>
+            <translation>File</translation>
+        </message>
+        <message>
+            <source>Find Photographs</source>
+            <translation>Find Photographs</translation>
+        </message>
+        <message>
+            <source>Find What They Share</source>
+            <translation>Find What They Share</translation>
+        </message>
+        <message>
+            <source>Find them...</source>
+            <translation>Find them...</translation>
+        </message>
+        <message>
             <source>First steps</source>
             <translation>First steps</translation>
+        </message>
+        <message>
+            <source>Fit</source>
+            <translation>Fit</translation>
+        </message>
+        <message>
+            <source>Fit the model to the pipework</source>
+            <translation>Fit the model to the pipework</translation>
         </message>
         <message>
             <source>Flange</source>
             <translation>Flange</translation>
         </message>
         <message>
+            <source>Folder with the photographs</source>
+            <translation>Folder with the photographs</translation>
+        </message>
+        <message>
             <source>Folders with CSV files of your own; a table takes the place of the same one further up and of the standards'</source>
             <translation>Folders with CSV files of your own; a table takes the place of the same one further up and of the standards'</translation>
+        </message>
+        <message>
+            <source>Forget</source>
+            <translation>Forget</translation>
+        </message>
+        <message>
+            <source>Format</source>
+            <translation>Format</translation>
         </message>
         <message>
             <source>Free, as measured</source>
@@ -449,6 +793,18 @@
             <translation>From photographs to a pipeline. Each step is checked off when the document shows it done; undo opens it again.</translation>
         </message>
         <message>
+            <source>From the design to what was built</source>
+            <translation>From the design to what was built</translation>
+        </message>
+        <message>
+            <source>Gamma</source>
+            <translation>Gamma</translation>
+        </message>
+        <message>
+            <source>Gasket</source>
+            <translation>Gasket</translation>
+        </message>
+        <message>
             <source>Good</source>
             <translation>Good</translation>
         </message>
@@ -457,8 +813,32 @@
             <translation>Good up to</translation>
         </message>
         <message>
+            <source>Green within the first limit, yellow up to the second, red beyond; grey has no counterpart</source>
+            <translation>Green within the first limit, yellow up to the second, red beyond; grey has no counterpart</translation>
+        </message>
+        <message>
+            <source>Heading</source>
+            <translation>Heading</translation>
+        </message>
+        <message>
+            <source>How far from the contours edges are looked for: more where components lie beside their pictures</source>
+            <translation>How far from the contours edges are looked for: more where components lie beside their pictures</translation>
+        </message>
+        <message>
+            <source>How far its axis turns</source>
+            <translation>How far its axis turns</translation>
+        </message>
+        <message>
+            <source>How far its middle moves; of pipes across their axis</source>
+            <translation>How far its middle moves; of pipes across their axis</translation>
+        </message>
+        <message>
             <source>How many parts of the processor are used at most</source>
             <translation>How many parts of the processor are used at most</translation>
+        </message>
+        <message>
+            <source>How many times their length residuals are drawn</source>
+            <translation>How many times their length residuals are drawn</translation>
         </message>
         <message>
             <source>How near to an edge the pointer must be, in pixels of the screen</source>
@@ -473,20 +853,76 @@
             <translation>Import a station</translation>
         </message>
         <message>
+            <source>In the browser</source>
+            <translation>In the browser</translation>
+        </message>
+        <message>
+            <source>In the station that was there before</source>
+            <translation>In the station that was there before</translation>
+        </message>
+        <message>
             <source>Join ends up to</source>
             <translation>Join ends up to</translation>
+        </message>
+        <message>
+            <source>Joints to components that are left out are left out, too</source>
+            <translation>Joints to components that are left out are left out, too</translation>
+        </message>
+        <message>
+            <source>Kind</source>
+            <translation>Kind</translation>
         </message>
         <message>
             <source>Kinds of components</source>
             <translation>Kinds of components</translation>
         </message>
         <message>
+            <source>LOA</source>
+            <translation>LOA</translation>
+        </message>
+        <message>
+            <source>Language</source>
+            <translation>Language</translation>
+        </message>
+        <message>
+            <source>Largest distance {distance:.1f} mm.</source>
+            <translation>Largest distance {distance:.1f} mm.</translation>
+        </message>
+        <message>
+            <source>Length of the residuals</source>
+            <translation>Length of the residuals</translation>
+        </message>
+        <message>
+            <source>Level of accuracy (USIBD)</source>
+            <translation>Level of accuracy (USIBD)</translation>
+        </message>
+        <message>
+            <source>Level, plumb and square runs</source>
+            <translation>Level, plumb and square runs</translation>
+        </message>
+        <message>
             <source>Limit of Baarda's test; 3.29 takes one good observation of a thousand for an outlier</source>
             <translation>Limit of Baarda's test; 3.29 takes one good observation of a thousand for an outlier</translation>
         </message>
         <message>
+            <source>Loading the photograph...</source>
+            <translation>Loading the photograph...</translation>
+        </message>
+        <message>
+            <source>Look how the stations lie to each other; the document stays as it is until you press OK</source>
+            <translation>Look how the stations lie to each other; the document stays as it is until you press OK</translation>
+        </message>
+        <message>
+            <source>Loupe</source>
+            <translation>Loupe</translation>
+        </message>
+        <message>
             <source>Measure a pipe</source>
             <translation>Measure a pipe</translation>
+        </message>
+        <message>
+            <source>Measure the deviations; the document stays as it is</source>
+            <translation>Measure the deviations; the document stays as it is</translation>
         </message>
         <message>
             <source>Measure the pipe around the corner</source>
@@ -501,6 +937,10 @@
             <translation>Measuring</translation>
         </message>
         <message>
+            <source>Merge Stations</source>
+            <translation>Merge Stations</translation>
+        </message>
+        <message>
             <source>Move the chosen folder down: its tables come before those above</source>
             <translation>Move the chosen folder down: its tables come before those above</translation>
         </message>
@@ -509,12 +949,44 @@
             <translation>Move the chosen folder up</translation>
         </message>
         <message>
+            <source>None: everything is determined and nothing is weakly placed.</source>
+            <translation>None: everything is determined and nothing is weakly placed.</translation>
+        </message>
+        <message>
             <source>Not measured</source>
             <translation>Not measured</translation>
         </message>
         <message>
+            <source>Note</source>
+            <translation>Note</translation>
+        </message>
+        <message>
+            <source>Of the axes, the larger of both ends of what they have in common; of surfaces the shortest</source>
+            <translation>Of the axes, the larger of both ends of what they have in common; of surfaces the shortest</translation>
+        </message>
+        <message>
+            <source>Of the distances between contours and edges</source>
+            <translation>Of the distances between contours and edges</translation>
+        </message>
+        <message>
+            <source>Of the report's texts</source>
+            <translation>Of the report's texts</translation>
+        </message>
+        <message>
+            <source>Open it afterwards</source>
+            <translation>Open it afterwards</translation>
+        </message>
+        <message>
             <source>Open its photo window</source>
             <translation>Open its photo window</translation>
+        </message>
+        <message>
+            <source>Otherwise selected components follow their own edges, and gaps may open to their neighbours</source>
+            <translation>Otherwise selected components follow their own edges, and gaps may open to their neighbours</translation>
+        </message>
+        <message>
+            <source>Outliers</source>
+            <translation>Outliers</translation>
         </message>
         <message>
             <source>Outliers from</source>
@@ -523,6 +995,22 @@
         <message>
             <source>Outside diameters from</source>
             <translation>Outside diameters from</translation>
+        </message>
+        <message>
+            <source>Part of the contours' samples that have an edge</source>
+            <translation>Part of the contours' samples that have an edge</translation>
+        </message>
+        <message>
+            <source>Photograph</source>
+            <translation>Photograph</translation>
+        </message>
+        <message>
+            <source>Photographs</source>
+            <translation>Photographs</translation>
+        </message>
+        <message>
+            <source>Photographs with contours</source>
+            <translation>Photographs with contours</translation>
         </message>
         <message>
             <source>Pick {index} failed: {reason}.</source>
@@ -539,6 +1027,14 @@
         <message>
             <source>Pipes from</source>
             <translation>Pipes from</translation>
+        </message>
+        <message>
+            <source>Pipes of an IFC file</source>
+            <translation>Pipes of an IFC file</translation>
+        </message>
+        <message>
+            <source>Pipes of selected solids</source>
+            <translation>Pipes of selected solids</translation>
         </message>
         <message>
             <source>Pipes that are nearly level, plumb or at right angles are so</source>
@@ -565,6 +1061,14 @@
             <translation>Quality is the root mean square distance of a component's contour from the edges in the photographs</translation>
         </message>
         <message>
+            <source>RMS distance of its contours to the edges (Eq. 4) before and after</source>
+            <translation>RMS distance of its contours to the edges (Eq. 4) before and after</translation>
+        </message>
+        <message>
+            <source>RMS px</source>
+            <translation>RMS px</translation>
+        </message>
+        <message>
             <source>Reconstruct picks</source>
             <translation>Reconstruct picks</translation>
         </message>
@@ -577,28 +1081,124 @@
             <translation>Reducer</translation>
         </message>
         <message>
+            <source>Reference</source>
+            <translation>Reference</translation>
+        </message>
+        <message>
             <source>Remove</source>
             <translation>Remove</translation>
+        </message>
+        <message>
+            <source>Report</source>
+            <translation>Report</translation>
+        </message>
+        <message>
+            <source>Reset</source>
+            <translation>Reset</translation>
+        </message>
+        <message>
+            <source>Residuals</source>
+            <translation>Residuals</translation>
+        </message>
+        <message>
+            <source>Residuals in the photographs</source>
+            <translation>Residuals in the photographs</translation>
+        </message>
+        <message>
+            <source>Residuals of the last adjustment, enlarged</source>
+            <translation>Residuals of the last adjustment, enlarged</translation>
         </message>
         <message>
             <source>Restore defaults</source>
             <translation>Restore defaults</translation>
         </message>
         <message>
+            <source>Result</source>
+            <translation>Result</translation>
+        </message>
+        <message>
+            <source>Round outer faces of solids are taken for pipes; to a surface only the shortest distance is measured</source>
+            <translation>Round outer faces of solids are taken for pipes; to a surface only the shortest distance is measured</translation>
+        </message>
+        <message>
+            <source>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</source>
+            <translation>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</translation>
+        </message>
+        <message>
+            <source>Same place</source>
+            <translation>Same place</translation>
+        </message>
+        <message>
+            <source>Save as CSV ...</source>
+            <translation>Save as CSV ...</translation>
+        </message>
+        <message>
+            <source>Save deviations</source>
+            <translation>Save deviations</translation>
+        </message>
+        <message>
+            <source>Search band</source>
+            <translation>Search band</translation>
+        </message>
+        <message>
+            <source>Select the solids in the tree or in 3D.</source>
+            <translation>Select the solids in the tree or in 3D.</translation>
+        </message>
+        <message>
+            <source>Selected components only</source>
+            <translation>Selected components only</translation>
+        </message>
+        <message>
             <source>Set everything on this page to what it was at first</source>
             <translation>Set everything on this page to what it was at first</translation>
+        </message>
+        <message>
+            <source>Shift mm</source>
+            <translation>Shift mm</translation>
+        </message>
+        <message>
+            <source>Show one pixel of the photograph as one of the screen (Ctrl+1)</source>
+            <translation>Show one pixel of the photograph as one of the screen (Ctrl+1)</translation>
+        </message>
+        <message>
+            <source>Show the parts of the contours that are behind something as dashed lines</source>
+            <translation>Show the parts of the contours that are behind something as dashed lines</translation>
+        </message>
+        <message>
+            <source>Show the photographs as they are, stretched to the screen's range</source>
+            <translation>Show the photographs as they are, stretched to the screen's range</translation>
+        </message>
+        <message>
+            <source>Show the photographs whole (F)</source>
+            <translation>Show the photographs whole (F)</translation>
+        </message>
+        <message>
+            <source>Show the same part of the object in the middle of all photographs</source>
+            <translation>Show the same part of the object in the middle of all photographs</translation>
         </message>
         <message>
             <source>Snap to edges within</source>
             <translation>Snap to edges within</translation>
         </message>
         <message>
+            <source>Solids: {labels}</source>
+            <translation>Solids: {labels}</translation>
+        </message>
+        <message>
             <source>Something else is still being computed; wait for its end or cancel it</source>
             <translation>Something else is still being computed; wait for its end or cancel it</translation>
         </message>
         <message>
+            <source>Standard deviation of its position before and after</source>
+            <translation>Standard deviation of its position before and after</translation>
+        </message>
+        <message>
             <source>Standard sizes</source>
             <translation>Standard sizes</translation>
+        </message>
+        <message>
+            <source>Standardised size (Baarda); 3.3 and more is a gross error</source>
+            <translation>Standardised size (Baarda); 3.3 and more is a gross error</translation>
         </message>
         <message>
             <source>Station</source>
@@ -613,8 +1213,36 @@
             <translation>Station {name}: {count} photographs imported</translation>
         </message>
         <message>
+            <source>Station {station}: place ± {sigma:.2f} mm, heading ± {heading:.3f}°</source>
+            <translation>Station {station}: place ± {sigma:.2f} mm, heading ± {heading:.3f}°</translation>
+        </message>
+        <message>
+            <source>Stations</source>
+            <translation>Stations</translation>
+        </message>
+        <message>
+            <source>Stay joined to what stays</source>
+            <translation>Stay joined to what stays</translation>
+        </message>
+        <message>
+            <source>Straight edges found in the photographs</source>
+            <translation>Straight edges found in the photographs</translation>
+        </message>
+        <message>
+            <source>Straight lines</source>
+            <translation>Straight lines</translation>
+        </message>
+        <message>
+            <source>Surface of selected solids</source>
+            <translation>Surface of selected solids</translation>
+        </message>
+        <message>
             <source>Tables of your own</source>
             <translation>Tables of your own</translation>
+        </message>
+        <message>
+            <source>Take back what was assigned by hand</source>
+            <translation>Take back what was assigned by hand</translation>
         </message>
         <message>
             <source>Take the chosen folder from the list; its files stay</source>
@@ -629,16 +1257,64 @@
             <translation>That is all. Import photographs of your own with Import Station.</translation>
         </message>
         <message>
+            <source>That is beside the photograph: click inside it</source>
+            <translation>That is beside the photograph: click inside it</translation>
+        </message>
+        <message>
             <source>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous.</source>
             <translation>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous.</translation>
+        </message>
+        <message>
+            <source>The components have changed: adjust them again.</source>
+            <translation>The components have changed: adjust them again.</translation>
+        </message>
+        <message>
+            <source>The components have changed: compare them again.</source>
+            <translation>The components have changed: compare them again.</translation>
+        </message>
+        <message>
+            <source>The components have changed: put the stations together again.</source>
+            <translation>The components have changed: put the stations together again.</translation>
+        </message>
+        <message>
+            <source>The distance in standard deviations; 4 and more does not fit</source>
+            <translation>The distance in standard deviations; 4 and more does not fit</translation>
+        </message>
+        <message>
+            <source>The model as designed</source>
+            <translation>The model as designed</translation>
         </message>
         <message>
             <source>The photo window shows the station's photographs side by side. Turn the wheel to zoom at the pointer, drag with the middle button to move the photographs.</source>
             <translation>The photo window shows the station's photographs side by side. Turn the wheel to zoom at the pointer, drag with the middle button to move the photographs.</translation>
         </message>
         <message>
+            <source>The photographs are not shown: {packages} is missing</source>
+            <translation>The photographs are not shown: {packages} is missing</translation>
+        </message>
+        <message>
             <source>The preferences are not changed. {error}</source>
             <translation>The preferences are not changed. {error}</translation>
+        </message>
+        <message>
+            <source>The report's heading, such as the project's name</source>
+            <translation>The report's heading, such as the project's name</translation>
+        </message>
+        <message>
+            <source>The station fits at several places: look at each in the 3D view and choose</source>
+            <translation>The station fits at several places: look at each in the 3D view and choose</translation>
+        </message>
+        <message>
+            <source>The station that stays where it is</source>
+            <translation>The station that stays where it is</translation>
+        </message>
+        <message>
+            <source>The table for a spreadsheet</source>
+            <translation>The table for a spreadsheet</translation>
+        </message>
+        <message>
+            <source>They make most of the file's size</source>
+            <translation>They make most of the file's size</translation>
         </message>
         <message>
             <source>Thicker pipes are not looked for</source>
@@ -657,12 +1333,60 @@
             <translation>Tolerances</translation>
         </message>
         <message>
+            <source>Turn °</source>
+            <translation>Turn °</translation>
+        </message>
+        <message>
             <source>Up</source>
             <translation>Up</translation>
         </message>
         <message>
+            <source>Use</source>
+            <translation>Use</translation>
+        </message>
+        <message>
+            <source>Warnings</source>
+            <translation>Warnings</translation>
+        </message>
+        <message>
+            <source>What and how</source>
+            <translation>What and how</translation>
+        </message>
+        <message>
+            <source>What and where to</source>
+            <translation>What and where to</translation>
+        </message>
+        <message>
+            <source>What does not fit</source>
+            <translation>What does not fit</translation>
+        </message>
+        <message>
             <source>What is looked for</source>
             <translation>What is looked for</translation>
+        </message>
+        <message>
+            <source>What the colours of the contours tell</source>
+            <translation>What the colours of the contours tell</translation>
+        </message>
+        <message>
+            <source>What they share</source>
+            <translation>What they share</translation>
+        </message>
+        <message>
+            <source>Where the model has other coordinates than the document; else both are compared as they stand</source>
+            <translation>Where the model has other coordinates than the document; else both are compared as they stand</translation>
+        </message>
+        <message>
+            <source>Where the point under the pointer lies in the other photographs, from near to far</source>
+            <translation>Where the point under the pointer lies in the other photographs, from near to far</translation>
+        </message>
+        <message>
+            <source>Where the search does not find it: say that the two selected components, one of each station, are the same</source>
+            <translation>Where the search does not find it: say that the two selected components, one of each station, are the same</translation>
+        </message>
+        <message>
+            <source>Whether it still counts</source>
+            <translation>Whether it still counts</translation>
         </message>
         <message>
             <source>Within the standard's tolerances</source>
@@ -673,12 +1397,272 @@
             <translation>Write the pipeline as IFC for BIM, as STEP solids or as a table.</translation>
         </message>
         <message>
+            <source>Written: {path}</source>
+            <translation>Written: {path}</translation>
+        </message>
+        <message>
             <source>all</source>
             <translation>all</translation>
         </message>
         <message>
+            <source>all ({count})</source>
+            <translation>all ({count})</translation>
+        </message>
+        <message>
+            <source>all components ({count})</source>
+            <translation>all components ({count})</translation>
+        </message>
+        <message>
+            <source>another task is open in the task panel</source>
+            <translation>another task is open in the task panel</translation>
+        </message>
+        <message>
+            <source>beyond</source>
+            <translation>beyond</translation>
+        </message>
+        <message>
+            <source>by kind</source>
+            <translation>by kind</translation>
+        </message>
+        <message>
+            <source>by quality</source>
+            <translation>by quality</translation>
+        </message>
+        <message>
+            <source>choose the model as designed</source>
+            <translation>choose the model as designed</translation>
+        </message>
+        <message>
+            <source>closed, for what it worked on was deleted</source>
+            <translation>closed, for what it worked on was deleted</translation>
+        </message>
+        <message>
+            <source>comparing with the model</source>
+            <translation>comparing with the model</translation>
+        </message>
+        <message>
+            <source>converged</source>
+            <translation>converged</translation>
+        </message>
+        <message>
+            <source>counts</source>
+            <translation>counts</translation>
+        </message>
+        <message>
+            <source>designed {designed:.1f} mm, difference {difference:+.1f} mm</source>
+            <translation>designed {designed:.1f} mm, difference {difference:+.1f} mm</translation>
+        </message>
+        <message>
+            <source>did not converge</source>
+            <translation>did not converge</translation>
+        </message>
+        <message>
+            <source>does not fit</source>
+            <translation>does not fit</translation>
+        </message>
+        <message>
+            <source>exact</source>
+            <translation>exact</translation>
+        </message>
+        <message>
+            <source>finding edges...</source>
+            <translation>finding edges...</translation>
+        </message>
+        <message>
+            <source>finish it first</source>
+            <translation>finish it first</translation>
+        </message>
+        <message>
+            <source>finish or close it first</source>
+            <translation>finish or close it first</translation>
+        </message>
+        <message>
+            <source>fixed</source>
+            <translation>fixed</translation>
+        </message>
+        <message>
+            <source>follows from its pipes</source>
+            <translation>follows from its pipes</translation>
+        </message>
+        <message>
+            <source>give one</source>
+            <translation>give one</translation>
+        </message>
+        <message>
+            <source>grey {value}</source>
+            <translation>grey {value}</translation>
+        </message>
+        <message>
+            <source>is</source>
+            <translation>is</translation>
+        </message>
+        <message>
+            <source>its document was closed</source>
+            <translation>its document was closed</translation>
+        </message>
+        <message>
+            <source>last seen in {folder}</source>
+            <translation>last seen in {folder}</translation>
+        </message>
+        <message>
+            <source>left out</source>
+            <translation>left out</translation>
+        </message>
+        <message>
+            <source>model.ifc</source>
+            <translation>model.ifc</translation>
+        </message>
+        <message>
+            <source>no component is selected</source>
+            <translation>no component is selected</translation>
+        </message>
+        <message>
+            <source>no solid is selected</source>
+            <translation>no solid is selected</translation>
+        </message>
+        <message>
+            <source>not determined</source>
+            <translation>not determined</translation>
+        </message>
+        <message>
+            <source>not trusted</source>
+            <translation>not trusted</translation>
+        </message>
+        <message>
+            <source>not two components of two stations are selected</source>
+            <translation>not two components of two stations are selected</translation>
+        </message>
+        <message>
+            <source>nothing was put together yet</source>
+            <translation>nothing was put together yet</translation>
+        </message>
+        <message>
+            <source>open it again</source>
+            <translation>open it again</translation>
+        </message>
+        <message>
+            <source>open one, or import a station first</source>
+            <translation>open one, or import a station first</translation>
+        </message>
+        <message>
+            <source>press Adjust first</source>
+            <translation>press Adjust first</translation>
+        </message>
+        <message>
+            <source>press Find What They Share first</source>
+            <translation>press Find What They Share first</translation>
+        </message>
+        <message>
+            <source>px in photographs, mm or degrees of conditions</source>
+            <translation>px in photographs, mm or degrees of conditions</translation>
+        </message>
+        <message>
+            <source>q px</source>
+            <translation>q px</translation>
+        </message>
+        <message>
+            <source>reading...</source>
+            <translation>reading...</translation>
+        </message>
+        <message>
+            <source>select one of each (Ctrl and click)</source>
+            <translation>select one of each (Ctrl and click)</translation>
+        </message>
+        <message>
+            <source>select some, or adjust all</source>
+            <translation>select some, or adjust all</translation>
+        </message>
+        <message>
+            <source>select some, or compare all</source>
+            <translation>select some, or compare all</translation>
+        </message>
+        <message>
+            <source>select some, or export all</source>
+            <translation>select some, or export all</translation>
+        </message>
+        <message>
+            <source>select the solids as designed in the tree or in 3D</source>
+            <translation>select the solids as designed in the tree or in 3D</translation>
+        </message>
+        <message>
+            <source>selected ({count})</source>
+            <translation>selected ({count})</translation>
+        </message>
+        <message>
+            <source>selected components ({count})</source>
+            <translation>selected components ({count})</translation>
+        </message>
+        <message>
+            <source>there is no IFC file</source>
+            <translation>there is no IFC file</translation>
+        </message>
+        <message>
+            <source>there is no document</source>
+            <translation>there is no document</translation>
+        </message>
+        <message>
+            <source>there is no file name</source>
+            <translation>there is no file name</translation>
+        </message>
+        <message>
+            <source>there is no result yet</source>
+            <translation>there is no result yet</translation>
+        </message>
+        <message>
             <source>up to</source>
             <translation>up to</translation>
+        </message>
+        <message>
+            <source>w</source>
+            <translation>w</translation>
+        </message>
+        <message>
+            <source>weak</source>
+            <translation>weak</translation>
+        </message>
+        <message>
+            <source>within their tolerances</source>
+            <translation>within their tolerances</translation>
+        </message>
+        <message>
+            <source>written: {path}</source>
+            <translation>written: {path}</translation>
+        </message>
+        <message>
+            <source>{component} is weakly placed (σ {sigma:.1f} mm): {reason}</source>
+            <translation>{component} is weakly placed (σ {sigma:.1f} mm): {reason}</translation>
+        </message>
+        <message>
+            <source>{count} beyond</source>
+            <translation>{count} beyond</translation>
+        </message>
+        <message>
+            <source>{count} up to {limit:g} mm</source>
+            <translation>{count} up to {limit:g} mm</translation>
+        </message>
+        <message>
+            <source>{count} within {limit:g} mm</source>
+            <translation>{count} within {limit:g} mm</translation>
+        </message>
+        <message>
+            <source>{count} without counterpart</source>
+            <translation>{count} without counterpart</translation>
+        </message>
+        <message>
+            <source>{station} ({count} components)</source>
+            <translation>{station} ({count} components)</translation>
+        </message>
+        <message>
+            <source>{station} - photographs</source>
+            <translation>{station} - photographs</translation>
+        </message>
+        <message>
+            <source>{station} in {reference}, place {place}: {count} components fit (score {score:.1f})</source>
+            <translation>{station} in {reference}, place {place}: {count} components fit (score {score:.1f})</translation>
+        </message>
+        <message>
+            <source>{station}: these photographs are not where they were</source>
+            <translation>{station}: these photographs are not where they were</translation>
         </message>
         <message>
             <source>{what} failed ({error}); the report view has the details, please report them</source>
@@ -696,12 +1680,36 @@
             <source>{what}: cancelled</source>
             <translation>{what}: cancelled</translation>
         </message>
+        <message>
+            <source>Δx mm</source>
+            <translation>Δx mm</translation>
+        </message>
+        <message>
+            <source>Δy mm</source>
+            <translation>Δy mm</translation>
+        </message>
+        <message>
+            <source>Δz mm</source>
+            <translation>Δz mm</translation>
+        </message>
+        <message>
+            <source>σ</source>
+            <translation>σ</translation>
+        </message>
+        <message>
+            <source>σ mm</source>
+            <translation>σ mm</translation>
+        </message>
     </context>
     <context>
         <name>Workbench</name>
         <message>
             <source>Pipe Workbench help</source>
             <translation>Pipe Workbench help</translation>
+        </message>
+        <message>
+            <source>Pipe adjustment</source>
+            <translation>Pipe adjustment</translation>
         </message>
         <message>
             <source>Pipe measuring</source>

@@ -7,9 +7,9 @@ import subprocess
 import FreeCAD
 import FreeCADGui
 import pytest
-from window import ROOT, SAMPLE, answer_message, choose_file, press, pump, screenshot, when_dialog_opens
+from window import ROOT, SAMPLE, QTest, answer_message, choose_file, press, pump, screenshot, when_dialog_opens
 
-from pipeworkbench.gui.compat import QtGui, QtWidgets
+from pipeworkbench.gui.compat import QtCore, QtGui, QtWidgets
 
 
 def test_workbench_is_listed_with_icon_menu_and_tooltips():
@@ -36,6 +36,8 @@ class Workbench: pass
 import types
 gui = types.ModuleType("FreeCADGui"); gui.Workbench = Workbench; gui.addWorkbench = lambda w: None
 sys.modules["FreeCADGui"] = gui
+app = types.ModuleType("FreeCAD"); app.addExportType = lambda *_: None
+sys.modules["FreeCAD"] = app
 began = time.perf_counter()
 for name in ("Init.py", "InitGui.py"):
     exec(compile(open(sys.argv[1] + "/" + name).read(), name, "exec"))
@@ -80,10 +82,12 @@ def test_clicks_from_photographs_to_ifc(document, tmp_path):
     screenshot("reconstructed")
 
     target = tmp_path / "out.ifc"
-    opened = when_dialog_opens(QtWidgets.QFileDialog, choose_file(target))
     press("Export")
     pump()
-    assert opened
+    path = FreeCADGui.getMainWindow().findChild(QtWidgets.QLineEdit, "path")
+    path.setText(str(target))
+    QTest.keyClick(path, QtCore.Qt.Key.Key_Return)
+    pump()
     assert target.read_text(encoding="utf-8").count("IFCPIPESEGMENT(") == 2
 
     document.undo()
@@ -129,10 +133,10 @@ def test_document_written_without_a_window_shows_its_pipes(tmp_path):
 
 
 def test_every_kind_of_component_has_its_place_in_the_tree_and_its_colour(tmp_path):
-    from pipeworkbench.commands.export import export
     from pipeworkbench.exports.fcstd import write_fcstd
     from pipeworkbench.features.component import component_of
     from pipeworkbench.features.document import components_in, connections_in
+    from pipeworkbench.features.exporting import export_document
     from pipeworkbench.features.preferences import Preferences
     from pipeworkbench.pipeline import Pipeline
 
@@ -157,7 +161,7 @@ def test_every_kind_of_component_has_its_place_in_the_tree_and_its_colour(tmp_pa
         FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
         FreeCADGui.SendMsgToActiveView("ViewFit")
         screenshot("everything_isometric")
-        export(opened, tmp_path / "again.json")
+        export_document(opened, tmp_path / "again.json")
         assert Pipeline.read(tmp_path / "again.json") == everything
     finally:
         FreeCAD.closeDocument(opened.Name)

@@ -19,7 +19,7 @@ from pipeworkbench.recon.adjustment.normal_equations import FRAME_UNITS
 from pipeworkbench.recon.adjustment.observations import MAD
 from pipeworkbench.recon.adjustment.problem import AdjustmentSettings, Problem
 from pipeworkbench.recon.adjustment.sampling import Samples
-from pipeworkbench.recon.adjustment.solution import AdjustedStation, ContourFit, Estimate, Gross, PseudoFit, Solution, Weak
+from pipeworkbench.recon.adjustment.solution import AdjustedStation, ContourFit, Estimate, Gross, ImageResiduals, PseudoFit, Solution, Weak
 from pipeworkbench.recon.adjustment.variances import Assessment
 from pipeworkbench.recon.bodies import SIZE_NAMES, unit_of
 from pipeworkbench.recon.camera import Array
@@ -83,6 +83,7 @@ def solution_of(outcome: Outcome, settings: AdjustmentSettings) -> Solution:
         gross=_gross(outcome, contours, fits, settings),
         undetermined=outcome.undetermined,
         weak=_weak(linear, assessment, factor, settings),
+        residuals=_residuals(outcome),
         warnings=tuple(_warnings(linear, outcome.undetermined)),
         full_covariance=_covariances(linear, assessment, factor),
     )
@@ -174,6 +175,18 @@ def _contours(outcome: Outcome) -> tuple[ContourFit, ...]:
         )
         for row in range(len(groups))
     )
+
+
+def _residuals(outcome: Outcome) -> tuple[ImageResiduals, ...]:
+    state = outcome.last.state
+    found = []
+    for number, (samples, rows) in enumerate(zip(outcome.samples, outcome.last.samples, strict=True)):
+        known = np.isfinite(rows.distance) & (rows.weight > 0)
+        contour = rows.position[known]
+        edge = contour + rows.distance[known, None] * rows.normal[known]
+        station = state.problem.stations[state.station_of_view[number]].name
+        found.append(ImageResiduals(station, state.cameras[number].name, samples.owner[known], contour, edge))
+    return tuple(found)
 
 
 def _pseudo(linear: Linearisation, assessment: Assessment) -> tuple[PseudoFit, ...]:

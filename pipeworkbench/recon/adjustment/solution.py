@@ -7,6 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pipeworkbench.pipeline import AnyComponent
 from pipeworkbench.recon.camera import Array, Camera
 
@@ -30,6 +33,19 @@ class ContourFit(NamedTuple):
     offset: float
     w: float
     redundancy: float
+
+
+class ImageResiduals(NamedTuple):
+    """The residuals in one image, of samples of contours that have an edge and count, n in number.
+
+    ``component`` (n,) rows of the solution's components; ``contour`` and ``edge`` (n, 2) px, from the contour's point to the edge's beside it.
+    """
+
+    station: str
+    image: str
+    component: NDArray[np.intp]
+    contour: Array
+    edge: Array
 
 
 class PseudoFit(NamedTuple):
@@ -116,6 +132,8 @@ class Solution:
         Ids with the reason: they are as they were.
     weak
         Components with a direction in which they are weakly placed.
+    residuals
+        Of each image, in the order of the views.
     warnings
         What else a person should know, in sentences.
     """
@@ -139,6 +157,7 @@ class Solution:
     gross: tuple[Gross, ...]
     undetermined: dict[str, str]
     weak: tuple[Weak, ...]
+    residuals: tuple[ImageResiduals, ...]
     warnings: tuple[str, ...]
     full_covariance: Callable[[str], tuple[tuple[str, ...], Array]]
 

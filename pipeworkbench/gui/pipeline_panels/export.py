@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The panel that writes components to a file: format, which components, the format's options, where to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import FreeCAD
+
+from pipeworkbench.errors import InputError
+from pipeworkbench.features.document import components_in
+from pipeworkbench.features.exporting import FORMATS, ExportTask, Format, export_task
+from pipeworkbench.features.preferences import PREFERENCES
+from pipeworkbench.gui.compat import QtCore, QtGui, QtWidgets
+from pipeworkbench.gui.dialogs import ask_save
+from pipeworkbench.gui.panel import Panel
+from pipeworkbench.gui.pipeline_panels.selection import SelectionObserver, selected_components
+from pipeworkbench.gui.pipeline_panels.widgets import button, choice, group, row, switch, text_line, words
+from pipeworkbench.gui.translation import tr
+from pipeworkbench.gui.worker import Progress
+
+LANGUAGES = (("en", "English"), ("de", "Deutsch"))
+ALL, SELECTED = range(2)
+REPORT = ".html"
+
+
+class ExportPanel(Panel):
+    """Writes components to a file."""
+
+    title = "Export"
+    icon = "export.svg"
+    formats: tuple[Format, ...] = FORMATS
+
+    def __init__(self, document: object = None) -> None:
+        super().__init__(document)
+        self._build()
+        self._selection = SelectionObserver(self._count)
+        self._count()
+        self._suggest()
+        self._choose_format()
+
+    def _build(self) -> None:
+        box, form = group(tr("What and where to"))
+        self.format = choice("format", [f"{tr(one.name)} (*{one.ending})" for one in self.formats])
+        self.format.currentIndexChanged.connect(self.guard(self._choose_format))
+        form.addRow(tr("Format"), self.format)
+        self.explanation = words("explanation")
+        form.addRow(self.explanation)
+        self.scope = choice("scope", ("", ""), tr("Joints to components that are left out are left out, too"))
+        self.scope.setCurrentIndex(SELECTED if selected_components(self.document) else ALL)
+        form.addRow(tr("Components"), self.scope)
+        self.options = QtWidgets.QWidget()
+        options = QtWidgets.QFormLayout(self.options)
+        options.setContentsMargins(0, 0, 0, 0)
+        self.report_title = text_line("reportTitle", tr("The report's heading, such as the project's name"), self.document.Label)
+        options.addRow(tr("Heading"), self.report_title)
+        self.language = choice("language", [name for _, name in LANGUAGES], tr("Of the report's texts"))
+        self.language.setCurrentIndex(int(QtCore.QLocale().name().startswith("de")))
+        options.addRow(tr("Language"), self.language)
+        self.photographs = switch("photographs", tr("Photographs with contours"), tr("They make most of the file's size"), on=True)
+        options.addRow(self.photographs)
+        self.opened = switch("opened", tr("Open it afterwards"), tr("In the browser"), on=True)
+        options.addRow(self.opened)
+        form.addRow(self.options)
+        self.path = text_line("path", tr("A file that is there is replaced"))
+        browse = button("browse", "...", tr("Choose folder and name"), self.guard(self._browse))
+        form.addRow(tr("File"), row(self.path, browse, stretch=False))
+        self.layout.addWidget(box)
+
+    def _chosen(self) -> Format:
+        return self.formats[self.format.currentIndex()]
+
+    def _count(self) -> None:
+        self.scope.setItemText(ALL, tr("all ({count})").format(count=len(components_in(self.document))))
+        self.scope.setItemText(SELECTED, tr("selected ({count})").format(count=len(selected_components(self.document))))
+
+    def _suggest(self) -> None:
+        last = FreeCAD.ParamGet(PREFERENCES).GetString("LastFolder", str(Path.home()))
+        folder = Path(self.document.FileName).parent if self.document.FileName else Path(last)
+        self.path.setText(str(folder / f"{self.document.Label}{self._chosen().ending}"))
+
+    def _choose_format(self) -> None:
+        chosen = self._chosen()
+        self.explanation.setText(tr(chosen.explanation))
+        self.options.setVisible(chosen.ending == REPORT)
+        if self.path.text().strip():
+            self.path.setText(str(Path(self.path.text().strip()).with_suffix(chosen.ending)))
+
+    def _browse(self) -> None:
+        path = ask_save(tr("Export"), self._chosen().filter, Path(self.path.text().strip() or ".").name)
+        if path is not None:
+            self.path.setText(str(path))
+
+    def accept(self) -> bool:
+        """Write the file and close."""
+        return self.attempt(self._write) and super().accept()
+
+    def _write(self) -> None:
+        path = self._checked_path()
+        objects = None
+        if self.scope.currentIndex() == SELECTED:
+            objects = selected_components(self.document)
+            if not objects:
+                raise InputError(self.title, "", tr("no component is selected"), tr("select some, or export all"))
+        language = LANGUAGES[self.language.currentIndex()][0]
+        task = export_task(
+            self.document,
+            path.suffix,
+            objects,
+            title=self.report_title.text().strip(),
+            language=language,
+            photographs=self.photographs.isChecked(),
+        )
+        self.compute(lambda progress: _written(task, path, progress))
+        FreeCAD.Console.PrintMessage(tr("written: {path}").format(path=path) + "\n")
+        if path.suffix.lower() == REPORT and self.opened.isChecked():
+            open_in_browser(path)
+
+    def _checked_path(self) -> Path:
+        text = self.path.text().strip()
+        if not text:
+            raise InputError(self.title, "", tr("there is no file name"), tr("give one"))
+        path = Path(text).expanduser()
+        return path if path.suffix else path.with_suffix(self._chosen().ending)
+
+    def refresh(self) -> None:
+        """Count anew."""
+        self._count()
+
+    def discard(self) -> None:
+        """Hear no more of the selection."""
+        self._selection.end()
+
+
+class ReportPanel(ExportPanel):
+    """Writes a report, and nothing else."""
+
+    title = "Report"
+    icon = "report.svg"
+    formats = tuple(one for one in FORMATS if one.ending == REPORT)
+
+
+def open_in_browser(path: Path) -> None:
+    """Show a file in the user's browser."""
+    QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(str(path)))
+
+
+def _written(task: ExportTask, path: Path, progress: Progress) -> None:
+    progress(f"writing {path.name}", 0, 0)
+    task.write(path)
