@@ -9,8 +9,9 @@ import pytest
 from pipeworkbench.errors import InputError
 from pipeworkbench.exports.kinds import COLOURS
 from pipeworkbench.features.document import add_pipeline
+from pipeworkbench.features.preferences import preferences
 from pipeworkbench.features.project import COLOUR_MODES, project_of
-from pipeworkbench.gui.colours import APPROXIMATE, UNKNOWN, colour_of, legend_of
+from pipeworkbench.gui.colours import colour_of, legend_of
 from pipeworkbench.gui.view_providers import colour_by, colour_mode
 from pipeworkbench.pipeline import Pipeline
 
@@ -44,7 +45,7 @@ def test_unknown_mode_is_refused(document):
 def test_quality_goes_from_good_to_bad(objects):
     legend = [entry.colour for entry in legend_of("quality")]
     seen = [colour_of(obj, "quality") for obj in objects[:6]]
-    assert seen == [legend[0], legend[0], legend[1], legend[2], legend[3], UNKNOWN]
+    assert seen == [legend[0], legend[0], legend[1], legend[2], legend[3], preferences().unknown_colour]
     assert legend_of("quality")[1].text == "0.3 to 0.6 px"
 
 
@@ -55,7 +56,7 @@ def test_level_of_accuracy_has_a_colour_each(objects):
 def test_kinds_have_their_colours_and_approximate_pipes_their_own(objects):
     by_id = {obj.ComponentId: obj for obj in objects}
     assert colour_of(by_id["E1"], "kind") == COLOURS[by_id["E1"].Proxy.kind]
-    assert colour_of(by_id["P4"], "kind") == APPROXIMATE
+    assert colour_of(by_id["P4"], "kind") == preferences().approximate_colour
 
 
 @pytest.mark.parametrize("mode", COLOUR_MODES)
