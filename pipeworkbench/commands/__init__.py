@@ -13,11 +13,16 @@ import FreeCADGui
 from pipeworkbench.commands.adjust import Adjust
 from pipeworkbench.commands.base import Command
 from pipeworkbench.commands.deviations import Deviations
+from pipeworkbench.commands.elbows import FindElbows
 from pipeworkbench.commands.example_project import ExampleProject
 from pipeworkbench.commands.export import Export
+from pipeworkbench.commands.find_pipes import FindPipes
+from pipeworkbench.commands.fittings import FindFittings
+from pipeworkbench.commands.flange import MeasureFlange
 from pipeworkbench.commands.import_station import ImportStation
 from pipeworkbench.commands.merge_stations import MergeStations
 from pipeworkbench.commands.photo_window import PhotoWindowCommand
+from pipeworkbench.commands.pipe import MeasurePipe
 from pipeworkbench.commands.preferences import ShowPreferences
 from pipeworkbench.commands.reconstruct_picks import ReconstructPicks
 from pipeworkbench.commands.report import Report
@@ -40,7 +45,7 @@ class Group:
 
 
 GROUPS = (
-    Group("Pipe measuring", (ImportStation, PhotoWindowCommand, ReconstructPicks)),
+    Group("Pipe measuring", (ImportStation, PhotoWindowCommand, MeasurePipe, FindPipes, FindElbows, MeasureFlange, FindFittings, ReconstructPicks)),
     Group("Pipe adjustment", (Adjust, MergeStations, Deviations)),
     Group("Pipe output", (Export, Report)),
     Group("Pipe Workbench help", (ExampleProject, ShowPreferences)),

@@ -60,7 +60,7 @@ def complete(
     settings = settings or AssembleSettings()
     name = station or next((c.station for c in components if c.station), None)
     components = with_flanges(components)
-    assembly = Assembly(components, _joined_ends(components, settings), name)
+    assembly = Assembly(components, joined_ends(components, settings.topology), name)
     assembly = with_reducers(assembly, reducers.detect(views, assembly.components, settings.reducers, assembly.taken))
     assembly = with_tees(assembly, tees.detect(views, assembly.components, settings.tees, assembly.taken))
     assembly = with_elbows(assembly, elbows.detect(views, assembly.components, settings.elbows, assembly.taken))
@@ -69,8 +69,8 @@ def complete(
     return Completed(assembly.components, graph.joints, graph.warnings)
 
 
-def _joined_ends(components: Sequence[AnyComponent], settings: AssembleSettings) -> frozenset[tuple[int, int]]:
+def joined_ends(components: Sequence[AnyComponent], settings: TopologySettings | None = None) -> frozenset[tuple[int, int]]:
     """Return the ends (row, port) that meet already."""
     rows = {component.id: row for row, component in enumerate(components)}
-    joints = join(components, settings.topology)
+    joints = join(components, settings)
     return frozenset(end for j in joints for end in ((rows[j.a], int(j.a_port)), (rows[j.b], int(j.b_port))))

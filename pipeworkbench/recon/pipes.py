@@ -8,23 +8,26 @@ is held, the pipe followed to its ends and adjusted over its whole length. Here 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pipeworkbench.catalogue import pipe_size
+from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.candidates import PipeCandidate, same_cylinder
 from pipeworkbench.recon.clicks import complete_picks
 from pipeworkbench.recon.completion import adjusted_over_clicks, completed_pipe, contour_quality
+from pipeworkbench.recon.cylinder import Cylinder
 from pipeworkbench.recon.groups import distinct
 from pipeworkbench.recon.one_image import solution_of_one_image
 from pipeworkbench.recon.pick_checks import found_plane_problem, no_fit, one_sided_problem, place_problem, plane_problem, size_problem
 from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.picks import MOST_ALTERNATIVES, PipePick
-from pipeworkbench.recon.search import find_cylinders
+from pipeworkbench.recon.search import Found, Searched, best_found, search_cylinders
 from pipeworkbench.recon.tangents import PipeTangents, all_tangents_of
 from pipeworkbench.recon.views import View
+from pipeworkbench.recon.weights import clicked_extents
 
 INSIDE_SCORE, INSIDE_QUALITY = 80.0, 1.3  # logarithm, px; what a pipe must have whose edges nobody clicked: the others were wrong too often
 UNSURE = "a pipe {:g} mm nearer or further fits nearly as well; click a longer part or clearer edges, or choose one of the alternatives"
@@ -40,6 +43,21 @@ class PickAnswer:
     chosen: PipeCandidate | None
     ranked: tuple[PipeCandidate, ...]
     reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Sighting:
+    """What is known of a pick's pipe before it is answered: the ends (2, 3) of its axis and its diameter in mm.
+
+    A ``candidate`` is one of the answers, followed to its ends; without one it is a guess, over what was clicked.
+    """
+
+    ends: Array
+    diameter: float
+    candidate: PipeCandidate | None = None
+
+
+Tell = Callable[[Sighting], None]
 
 
 def from_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | None = None, candidates: int = 1) -> tuple[PipeCandidate, ...]:
@@ -74,16 +92,13 @@ def answer_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | 
     settings = settings or PickSettings()
     wholes = complete_picks(views[pick.camera], pick)
     inside = len(pick.edges) == 1
-    if not wholes and inside:
-        return PickAnswer(None, (), "no two edges of a pipe are seen around the click; click near both edges of the pipe")
     if not wholes:
-        return PickAnswer(None, (), "no straight edges run beside the clicks; click two points on each edge of the pipe")
-    best, reason = _surest(views, wholes, settings, inside=inside)
+        return PickAnswer(None, (), _no_edges(inside=inside))
+    searches = _Searches(views)
+    best, reason = _surest([_from_edges(views, whole, settings, 1, searches) for whole in wholes], inside=inside)
     if candidates == 1 and pick.alternative is None:
         return PickAnswer(best, () if best is None else (best,), reason)
-    # how many are compared must not depend on how many are wanted: else their numbers would change
-    wide = replace(settings, kept=MOST_ALTERNATIVES, least_lead=-np.inf, least_nearby_lead=-np.inf, least_elsewhere=-np.inf)
-    others = [other for whole in wholes for other in _from_edges(views, whole, wide, MOST_ALTERNATIVES)[0]]
+    others = [other for whole in wholes for other in _from_edges(views, whole, _wide(settings), MOST_ALTERNATIVES, searches)[0]]
     best_first = [*([] if best is None else [best]), *sorted(others, key=lambda other: -other.score)]
     ranked = distinct(best_first, lambda one, other: same_cylinder(other, one))[:MOST_ALTERNATIVES]
     if pick.alternative is None:
@@ -95,27 +110,98 @@ def answer_pick(views: Sequence[View], pick: PipePick, settings: PickSettings | 
     return PickAnswer(None, tuple(ranked), reason)
 
 
-def _surest(views: Sequence[View], wholes: Sequence[PipePick], settings: PickSettings, *, inside: bool) -> tuple[PipeCandidate | None, str]:
-    """Return the best pipe over the pairs of edges that a pick can mean, or the reason of the likeliest pair.
+def follow_pick(views: Sequence[View], pick: PipePick, tell: Tell, settings: PickSettings | None = None) -> PickAnswer:
+    """Answer a pick for one who watches: what is seen on the way is told at once, the likeliest first, and all that it could be is ranked.
+
+    Parameters
+    ----------
+    views : sequence of View
+    pick : PipePick
+    tell : callable
+        Called with each sighting; what it raises ends the work.
+    settings : PickSettings, optional
+
+    Returns
+    -------
+    PickAnswer
+        As that of :func:`answer_pick`; around one click the alternatives are the pipes of other pairs of edges, and of the likeliest pair.
+    """
+    settings = settings or PickSettings()
+    wholes = complete_picks(views[pick.camera], pick)
+    inside = len(pick.edges) == 1
+    if not wholes:
+        return PickAnswer(None, (), _no_edges(inside=inside))
+    searches = _Searches(views, tell)
+    answers = [_from_edges(views, whole, settings, 1, searches) for whole in wholes]
+    best, reason = _surest(answers, inside=inside)
+    sure = [candidate for found, _ in answers for candidate in found]
+    scores = [max((candidate.score for candidate in found), default=-np.inf) for found, _ in answers]
+    likeliest = wholes[int(np.argmax(scores))]
+    others = sure + _from_edges(views, likeliest, _wide(settings), MOST_ALTERNATIVES, searches)[0]
+    best_first = [*([] if best is None else [best]), *sorted(others, key=lambda other: -other.score)]
+    return PickAnswer(best, tuple(distinct(best_first, lambda one, other: same_cylinder(other, one)))[:MOST_ALTERNATIVES], reason)
+
+
+class _Searches:
+    """The cylinders that picks could be, each searched once; what looks best on the way is told."""
+
+    def __init__(self, views: Sequence[View], tell: Tell | None = None) -> None:
+        self._views, self._tell = views, tell
+        self._done: dict[PipePick, Searched | None] = {}
+
+    def find(self, pick: PipePick, tangents: Sequence[PipeTangents], settings: PickSettings) -> list[Found]:
+        """Return the best cylinders of a pick."""
+        is_new = pick not in self._done
+        origin = self._views[pick.camera].camera.projection_centre
+
+        def guess(cylinder: Cylinder) -> None:
+            if self._tell is not None:
+                start, end = clicked_extents(cylinder.as_many(), origin, tangents[0])[0]
+                self._tell(Sighting(np.array([cylinder.at(start), cylinder.at(end)]), 2 * cylinder.radius))
+
+        if is_new:
+            self._done[pick] = search_cylinders(self._views, pick, tangents, settings, guess)
+        found = best_found(self._views, pick, tangents[0], self._done[pick], settings)
+        if is_new and found:
+            guess(found[0].cylinder)
+        return found
+
+    def tell(self, candidate: PipeCandidate) -> None:
+        """Tell that a candidate was followed to its ends."""
+        if self._tell is not None:
+            diameter = candidate.size.outer_diameter if candidate.size else 2 * candidate.solution.cylinder.radius
+            self._tell(Sighting(candidate.ends, diameter, candidate))
+
+
+def _wide(settings: PickSettings) -> PickSettings:
+    """Return settings with which all that a pick could be is found; how many are compared does not depend on how many are wanted."""
+    return replace(settings, kept=MOST_ALTERNATIVES, least_lead=-np.inf, least_nearby_lead=-np.inf, least_elsewhere=-np.inf)
+
+
+def _no_edges(*, inside: bool) -> str:
+    if inside:
+        return "no two edges of a pipe are seen around the click; click near both edges of the pipe"
+    return "no straight edges run beside the clicks; click two points on each edge of the pipe"
+
+
+def _surest(found: Sequence[tuple[list[PipeCandidate], str]], *, inside: bool) -> tuple[PipeCandidate | None, str]:
+    """Return the best pipe of those found between the pairs of edges that a pick can mean, or the reason of the likeliest pair.
 
     Pairs around one click ``inside`` are guesses: what they give must fit better than what was clicked.
     """
-    answers: list[PipeCandidate] = []
-    reasons = []
-    for whole in wholes:
-        found, reason = _from_edges(views, whole, settings, 1)
-        answers += found
-        reasons.append(reason)
+    answers = [candidate for candidates, _ in found for candidate in candidates]
     if not answers:
         # the reason of a guess says nothing to a person who did not make it
-        return None, "no pipe around the click fits the images; click near both edges of the pipe" if inside else reasons[0]
+        return None, "no pipe around the click fits the images; click near both edges of the pipe" if inside else found[0][1]
     best = max(answers, key=lambda answer: answer.score)
     if inside and (best.approximate or best.score < INSIDE_SCORE or best.quality > INSIDE_QUALITY):
         return None, "which edges around the click are the pipe's is not sure; click near both edges of the pipe"
     return best, ""
 
 
-def _from_edges(views: Sequence[View], pick: PipePick, settings: PickSettings, candidates: int) -> tuple[list[PipeCandidate], str]:
+def _from_edges(
+    views: Sequence[View], pick: PipePick, settings: PickSettings, candidates: int, searches: _Searches
+) -> tuple[list[PipeCandidate], str]:
     """Return pipes between two clicked edges, at most ``candidates``, or why there is none."""
     tangents = all_tangents_of(views[pick.camera], pick)
     first = tangents[0]
@@ -126,7 +212,7 @@ def _from_edges(views: Sequence[View], pick: PipePick, settings: PickSettings, c
     problem = problem or plane_problem(views, pick, first, settings)
     if problem:
         return [], problem
-    adjusted = adjusted_over_clicks(views, pick, first, find_cylinders(views, pick, tangents, settings), settings)
+    adjusted = adjusted_over_clicks(views, pick, first, searches.find(pick, tangents, settings), settings)
     if adjusted and adjusted[0].lead < settings.least_lead:
         in_plane = found_plane_problem(views, pick, adjusted[0].solution.cylinder, adjusted[0].extent)
         return (
@@ -141,6 +227,7 @@ def _from_edges(views: Sequence[View], pick: PipePick, settings: PickSettings, c
         problem = problem or reason
         if not reason:
             found.append(completed)
+            searches.tell(completed)
         # where the best cannot be right, the next one is no better an answer, only an alternative
         if len(found) == candidates or (reason and candidates == 1 and _in_range(completed, views[pick.camera], settings)):
             break

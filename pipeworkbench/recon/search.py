@@ -11,7 +11,7 @@ the standard sizes that come near are tried with either edge, each by the eviden
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,7 +28,7 @@ from pipeworkbench.recon.settle import settle
 from pipeworkbench.recon.tangents import PipeTangents
 from pipeworkbench.recon.texture import NODES, TextureSettings, parabola, texture
 from pipeworkbench.recon.views import View
-from pipeworkbench.recon.weights import clicked_extents, leads_of, outermost_first, weights_of
+from pipeworkbench.recon.weights import Weights, clicked_extents, leads_of, outermost_first, weights_of
 
 NEAR_DEPTH, NEAR_SLOPE = 0.004, 0.12  # hypotheses nearer than this (relative, sine) settle on one cylinder
 SAME_AXIS = 0.3  # in radii: settled cylinders nearer than this are one
@@ -53,17 +53,44 @@ class Found:
     lead: float
 
 
+@dataclass(frozen=True, eq=False)
+class Searched:
+    """All cylinders (k) that a pick could be, before the best are chosen: their weights and which (k,) of the ``sizes`` each has.
+
+    ``series`` (n,) are the sizes'; without any sizes the diameter is the pick's own or free.
+    """
+
+    cylinders: Cylinders
+    weights: Weights
+    which: NDArray[np.intp]
+    sizes: tuple[PipeSize, ...]
+    series: Array
+
+
 def find_cylinders(views: Sequence[View], pick: PipePick, tangents: Sequence[PipeTangents], settings: PickSettings) -> list[Found]:
     """Return the cylinders that fit a pick and all images best, at most ``settings.kept``, best first.
 
     ``tangents`` are the planes that the pick could mean, the most likely first.
     """
+    return best_found(views, pick, tangents[0], search_cylinders(views, pick, tangents, settings), settings)
+
+
+def search_cylinders(
+    views: Sequence[View],
+    pick: PipePick,
+    tangents: Sequence[PipeTangents],
+    settings: PickSettings,
+    seen: Callable[[Cylinder], None] = lambda cylinder: None,  # noqa: ARG005
+) -> Searched | None:
+    """Return all cylinders that a pick could be, None where there are none; how many are ``kept`` does not matter to them.
+
+    ``seen`` is called with the one that looks best before the sizes of the standard are tried.
+    """
     clicked = tangents[0]
     origin = views[pick.camera].camera.projection_centre
-    pixels_per_radian = views[pick.camera].camera.interior.pixels_per_radian
     depth, slope = _hypotheses(views, pick, tangents, settings)
     if not len(depth):
-        return []
+        return None
     chosen = _rank(views, pick, clicked, depth, slope, settings)
     hypotheses = joined([planes.cylinders_at(origin, depth[chosen], slope[chosen]) for planes in tangents[: settings.alternatives]])
 
@@ -74,28 +101,39 @@ def find_cylinders(views: Sequence[View], pick: PipePick, tangents: Sequence[Pip
     weights = weights_of(views, pick, clicked, settled, 1.0, settings, surface_samples=TextureSettings())
     best = _best_distinct(settled, weights.total, extents_of(settled), settings.sized)
     settled, weights = settled[best], weights[best]
+    if len(settled):
+        seen(settled.one(int(np.argmax(weights.total))))
     if pick.diameter == "free":
-        leads = leads_of(settled, weights.total, origin)
-        return [Found(settled.one(row), None, float(weights.total[row]), float(leads[row])) for row in range(min(settings.kept, len(settled)))]
+        return Searched(settled, weights, np.zeros(len(settled), np.intp), (), np.ones(1))
     sizes = sizes_in(settings) if pick.diameter is None else ()
     standard = np.array([size.outer_diameter for size in sizes] if sizes else [pick.diameter], float)
     series = np.array([size.series for size in sizes] or [1], float)
     sized, which = _with_sizes(settled, standard / 2, series, origin, settings)
     if not len(sized):
-        return []
+        return None
     # edges draw a limb without contrast of its own to another row: so the ones that hold the clear edge are weighed as well
     sized, which = joined([settle(views, sized, extents_of, held=True), sized]), np.tile(which, 2)
     weights = weights_of(views, pick, clicked, sized, series[which], settings, surface_samples=TextureSettings())
     best = _best_distinct(sized, weights.total, extents_of(sized), SIZED_KEPT)
-    sized, weights, which = sized[best], weights[best], which[best]
-    order = outermost_first(sized, weights, origin, pixels_per_radian)[: settings.kept]
+    return Searched(sized[best], weights[best], which[best], sizes, series)
+
+
+def best_found(views: Sequence[View], pick: PipePick, clicked: PipeTangents, searched: Searched | None, settings: PickSettings) -> list[Found]:
+    """Return the best of the cylinders that a pick could be, at most ``settings.kept``, best first."""
+    if searched is None:
+        return []
+    origin = views[pick.camera].camera.projection_centre
+    sized, weights, which, series, sizes = searched.cylinders, searched.weights, searched.which, searched.series, searched.sizes
     leads = leads_of(sized, weights.total, origin)
+    if pick.diameter == "free":
+        return [Found(sized.one(row), None, float(weights.total[row]), float(leads[row])) for row in range(min(settings.kept, len(sized)))]
+    order = outermost_first(sized, weights, origin, views[pick.camera].camera.interior.pixels_per_radian)[: settings.kept]
     # what was preferred for lying around the best has the lead of their common place
     leads[order[0]] = leads[np.argmax(weights.total)]
     leads = leads[order]
     sized, which = sized[order], which[order]
-    moved, weights = best_moved(views, pick, clicked, sized, extents_of(sized), series[which], settings)
-    order = outermost_first(moved, weights, origin, pixels_per_radian)
+    moved, weights = best_moved(views, pick, clicked, sized, clicked_extents(sized, origin, clicked), series[which], settings)
+    order = outermost_first(moved, weights, origin, views[pick.camera].camera.interior.pixels_per_radian)
     return [Found(moved.one(row), sizes[which[row]] if sizes else None, float(weights.total[row]), float(leads[row])) for row in order]
 
 

@@ -330,11 +330,11 @@
         <name>PipeWB_Elbows</name>
         <message>
             <source>Elbows</source>
-            <translation type="vanished">Bögen</translation>
+            <translation>Bögen</translation>
         </message>
         <message>
             <source>Find the elbows between the pipes, or between two selected pipes, and choose their bend radius</source>
-            <translation type="vanished">Die Bögen zwischen den Rohren oder zwischen zwei ausgewählten Rohren finden und ihren Biegeradius wählen</translation>
+            <translation>Die Bögen zwischen den Rohren oder zwischen zwei ausgewählten Rohren finden und ihren Biegeradius wählen</translation>
         </message>
     </context>
     <context>
@@ -367,33 +367,33 @@
         <name>PipeWB_FindPipes</name>
         <message>
             <source>Find Pipes</source>
-            <translation type="vanished">Rohre finden</translation>
+            <translation>Rohre finden</translation>
         </message>
         <message>
             <source>Look for pipes in the whole station without any click; each is proposed and accepted or rejected</source>
-            <translation type="vanished">Im ganzen Standpunkt ohne Klick nach Rohren suchen; jedes wird vorgeschlagen und angenommen oder abgelehnt</translation>
+            <translation>Im ganzen Standpunkt ohne Klick nach Rohren suchen; jedes wird vorgeschlagen und angenommen oder abgelehnt</translation>
         </message>
     </context>
     <context>
         <name>PipeWB_Fittings</name>
         <message>
             <source>Find tees, reducers and caps at the pipes, or at the selected pipes</source>
-            <translation type="vanished">T-Stücke, Reduzierstücke und Kappen an den Rohren oder an den ausgewählten Rohren finden</translation>
+            <translation>T-Stücke, Reduzierstücke und Kappen an den Rohren oder an den ausgewählten Rohren finden</translation>
         </message>
         <message>
             <source>Tees, Reducers and Caps</source>
-            <translation type="vanished">T-Stücke, Reduzierstücke und Kappen</translation>
+            <translation>T-Stücke, Reduzierstücke und Kappen</translation>
         </message>
     </context>
     <context>
         <name>PipeWB_Flange</name>
         <message>
             <source>Flange</source>
-            <translation type="vanished">Flansch</translation>
+            <translation>Flansch</translation>
         </message>
         <message>
             <source>Measure a flange: click on the straight edge of its rim; or give the selected flange another type</source>
-            <translation type="vanished">Einen Flansch messen: auf die gerade Kante seines Rands klicken; oder dem ausgewählten Flansch einen anderen Typ geben</translation>
+            <translation>Einen Flansch messen: auf die gerade Kante seines Rands klicken; oder dem ausgewählten Flansch einen anderen Typ geben</translation>
         </message>
     </context>
     <context>
@@ -437,11 +437,11 @@
         <name>PipeWB_Pipe</name>
         <message>
             <source>Measure a pipe: one click inside it or one on each of its edges in a photograph</source>
-            <translation type="vanished">Ein Rohr messen: ein Klick hinein oder je einer auf seine beiden Kanten in einem Foto</translation>
+            <translation>Ein Rohr messen: ein Klick hinein oder je einer auf seine beiden Kanten in einem Foto</translation>
         </message>
         <message>
             <source>Pipe</source>
-            <translation type="vanished">Rohr</translation>
+            <translation>Rohr</translation>
         </message>
     </context>
     <context>
@@ -497,7 +497,7 @@
         </message>
         <message>
             <source>A click is</source>
-            <translation type="vanished">Ein Klick ist</translation>
+            <translation>Ein Klick ist</translation>
         </message>
         <message>
             <source>A file that is there is replaced</source>
@@ -521,11 +521,11 @@
         </message>
         <message>
             <source>Accept</source>
-            <translation type="vanished">Übernehmen</translation>
+            <translation>Übernehmen</translation>
         </message>
         <message>
             <source>Accept the {count} ticked</source>
-            <translation type="vanished">Die {count} angekreuzten übernehmen</translation>
+            <translation>Die {count} angekreuzten übernehmen</translation>
         </message>
         <message>
             <source>Add ...</source>
@@ -541,7 +541,7 @@
         </message>
         <message>
             <source>Add the flange on the other side of the gasket as well, where one is seen</source>
-            <translation type="vanished">Auch den Flansch auf der anderen Seite der Dichtung hinzufügen, wenn einer zu sehen ist</translation>
+            <translation>Auch den Flansch auf der anderen Seite der Dichtung hinzufügen, wenn einer zu sehen ist</translation>
         </message>
         <message>
             <source>Adjust</source>
@@ -577,7 +577,7 @@
         </message>
         <message>
             <source>Angle</source>
-            <translation type="vanished">Winkel</translation>
+            <translation>Winkel</translation>
         </message>
         <message>
             <source>Angle °</source>
@@ -613,7 +613,7 @@
         </message>
         <message>
             <source>At</source>
-            <translation type="vanished">An</translation>
+            <translation>An</translation>
         </message>
         <message>
             <source>Bad</source>
@@ -621,15 +621,15 @@
         </message>
         <message>
             <source>Bend</source>
-            <translation type="vanished">Bauart</translation>
+            <translation>Bauart</translation>
         </message>
         <message>
             <source>Bend radius of the chosen elbow: one of the standard, or a free one</source>
-            <translation type="vanished">Biegeradius des gewählten Bogens: einer der Norm oder ein freier</translation>
+            <translation>Biegeradius des gewählten Bogens: einer der Norm oder ein freier</translation>
         </message>
         <message>
             <source>Between</source>
-            <translation type="vanished">Zwischen</translation>
+            <translation>Zwischen</translation>
         </message>
         <message>
             <source>Between both after the adjustment of the stations' places; of pipes the larger of both ends</source>
@@ -669,7 +669,7 @@
         </message>
         <message>
             <source>Choose another type for {name}; its face stays where it is.</source>
-            <translation type="vanished">Wählen Sie einen anderen Typ für {name}; seine Dichtfläche bleibt, wo sie ist.</translation>
+            <translation>Wählen Sie einen anderen Typ für {name}; seine Dichtfläche bleibt, wo sie ist.</translation>
         </message>
         <message>
             <source>Choose folder and name</source>
@@ -693,15 +693,15 @@
         </message>
         <message>
             <source>Clear</source>
-            <translation type="vanished">Verwerfen</translation>
+            <translation>Verwerfen</translation>
         </message>
         <message>
             <source>Click again, change the diameter, or step back with Esc.</source>
-            <translation type="vanished">Klicken Sie noch einmal, ändern Sie den Durchmesser oder gehen Sie mit Esc zurück.</translation>
+            <translation>Klicken Sie noch einmal, ändern Sie den Durchmesser oder gehen Sie mit Esc zurück.</translation>
         </message>
         <message>
             <source>Click inside a pipe, or on one of its edges.</source>
-            <translation type="vanished">Klicken Sie in ein Rohr oder auf eine seiner Kanten.</translation>
+            <translation>Klicken Sie in ein Rohr oder auf eine seiner Kanten.</translation>
         </message>
         <message>
             <source>Click on a flange of a pipe, then choose its type and pressure class from those that fit.</source>
@@ -709,15 +709,15 @@
         </message>
         <message>
             <source>Click on a proposal to choose it; Enter accepts it, Esc leaves</source>
-            <translation type="vanished">Einen Vorschlag anklicken, um ihn zu wählen; Enter übernimmt ihn, Esc beendet</translation>
+            <translation>Einen Vorschlag anklicken, um ihn zu wählen; Enter übernimmt ihn, Esc beendet</translation>
         </message>
         <message>
             <source>Click on the other edge of the pipe, in the same photograph.</source>
-            <translation type="vanished">Klicken Sie im selben Foto auf die andere Kante des Rohrs.</translation>
+            <translation>Klicken Sie im selben Foto auf die andere Kante des Rohrs.</translation>
         </message>
         <message>
             <source>Click on the straight edge of a flange's rim. Its pipe must have been measured.</source>
-            <translation type="vanished">Klicken Sie auf die gerade Kante eines Flanschrands. Sein Rohr muss schon gemessen sein.</translation>
+            <translation>Klicken Sie auf die gerade Kante eines Flanschrands. Sein Rohr muss schon gemessen sein.</translation>
         </message>
         <message>
             <source>Click to choose another colour</source>
@@ -773,7 +773,7 @@
         </message>
         <message>
             <source>Confidence</source>
-            <translation type="vanished">Sicherheit</translation>
+            <translation>Sicherheit</translation>
         </message>
         <message>
             <source>Confidence from</source>
@@ -801,7 +801,7 @@
         </message>
         <message>
             <source>D {D:g} mm, C {C:g} mm, length {length:g} mm</source>
-            <translation type="vanished">D {D:g} mm, C {C:g} mm, Länge {length:g} mm</translation>
+            <translation>D {D:g} mm, C {C:g} mm, Länge {length:g} mm</translation>
         </message>
         <message>
             <source>Dash what is hidden</source>
@@ -813,7 +813,7 @@
         </message>
         <message>
             <source>Diameter</source>
-            <translation type="vanished">Durchmesser</translation>
+            <translation>Durchmesser</translation>
         </message>
         <message>
             <source>Diameter mm</source>
@@ -845,7 +845,7 @@
         </message>
         <message>
             <source>Drag to make the pipe thicker or thinner: it moves away or nearer, so that its clicked edges stay</source>
-            <translation type="vanished">Ziehen macht das Rohr dicker oder dünner: Es rückt ferner oder näher, sodass seine angeklickten Kanten bleiben</translation>
+            <translation>Ziehen macht das Rohr dicker oder dünner: Es rückt ferner oder näher, sodass seine angeklickten Kanten bleiben</translation>
         </message>
         <message>
             <source>Edges</source>
@@ -869,7 +869,7 @@
         </message>
         <message>
             <source>Elbows</source>
-            <translation type="vanished">Bögen</translation>
+            <translation>Bögen</translation>
         </message>
         <message>
             <source>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</source>
@@ -893,11 +893,11 @@
         </message>
         <message>
             <source>Enter accepts the flange. Choose another type if it is not the right one.</source>
-            <translation type="vanished">Enter übernimmt den Flansch. Wählen Sie einen anderen Typ, wenn er nicht der richtige ist.</translation>
+            <translation>Enter übernimmt den Flansch. Wählen Sie einen anderen Typ, wenn er nicht der richtige ist.</translation>
         </message>
         <message>
             <source>Enter accepts the pipe. Digits choose another one. Esc steps back.</source>
-            <translation type="vanished">Enter übernimmt das Rohr. Ziffern wählen ein anderes. Esc geht zurück.</translation>
+            <translation>Enter übernimmt das Rohr. Ziffern wählen ein anderes. Esc geht zurück.</translation>
         </message>
         <message>
             <source>Exactly as in the standard</source>
@@ -933,7 +933,7 @@
         </message>
         <message>
             <source>Find Pipes</source>
-            <translation type="vanished">Rohre finden</translation>
+            <translation>Rohre finden</translation>
         </message>
         <message>
             <source>Find What They Share</source>
@@ -945,7 +945,7 @@
         </message>
         <message>
             <source>Finding pipes</source>
-            <translation type="vanished">Rohre werden gesucht</translation>
+            <translation>Rohre werden gesucht</translation>
         </message>
         <message>
             <source>First steps</source>
@@ -961,11 +961,11 @@
         </message>
         <message>
             <source>Fix the outside diameter; the projection follows, and the pipe is measured with it</source>
-            <translation type="vanished">Den Außendurchmesser festlegen; die Projektion folgt, und das Rohr wird damit gemessen</translation>
+            <translation>Den Außendurchmesser festlegen; die Projektion folgt, und das Rohr wird damit gemessen</translation>
         </message>
         <message>
             <source>Fixed at</source>
-            <translation type="vanished">Festgelegt auf</translation>
+            <translation>Festgelegt auf</translation>
         </message>
         <message>
             <source>Flange</source>
@@ -973,7 +973,7 @@
         </message>
         <message>
             <source>Flange: click on the straight edge of its rim</source>
-            <translation type="vanished">Flansch: auf die gerade Kante seines Rands klicken</translation>
+            <translation>Flansch: auf die gerade Kante seines Rands klicken</translation>
         </message>
         <message>
             <source>Folder with the photographs</source>
@@ -989,11 +989,11 @@
         </message>
         <message>
             <source>Forget the click</source>
-            <translation type="vanished">Den Klick vergessen</translation>
+            <translation>Den Klick vergessen</translation>
         </message>
         <message>
             <source>Forget the clicks</source>
-            <translation type="vanished">Die Klicks vergessen</translation>
+            <translation>Die Klicks vergessen</translation>
         </message>
         <message>
             <source>Format</source>
@@ -1001,7 +1001,7 @@
         </message>
         <message>
             <source>Free bend radius; the projection follows</source>
-            <translation type="vanished">Freier Biegeradius; die Projektion folgt</translation>
+            <translation>Freier Biegeradius; die Projektion folgt</translation>
         </message>
         <message>
             <source>Free, as measured</source>
@@ -1009,7 +1009,7 @@
         </message>
         <message>
             <source>From</source>
-            <translation type="vanished">Von</translation>
+            <translation>Von</translation>
         </message>
         <message>
             <source>From photographs to a pipeline. Each step is checked off when the document shows it done; undo opens it again.</source>
@@ -1085,7 +1085,7 @@
         </message>
         <message>
             <source>In the document: {names}</source>
-            <translation type="vanished">Im Dokument: {names}</translation>
+            <translation>Im Dokument: {names}</translation>
         </message>
         <message>
             <source>In the station that was there before</source>
@@ -1121,7 +1121,7 @@
         </message>
         <message>
             <source>Length</source>
-            <translation type="vanished">Länge</translation>
+            <translation>Länge</translation>
         </message>
         <message>
             <source>Length of the residuals</source>
@@ -1149,15 +1149,15 @@
         </message>
         <message>
             <source>Looking ...</source>
-            <translation type="vanished">Wird gesucht ...</translation>
+            <translation>Wird gesucht ...</translation>
         </message>
         <message>
             <source>Looking for more ...</source>
-            <translation type="vanished">Weitere werden gesucht ...</translation>
+            <translation>Weitere werden gesucht ...</translation>
         </message>
         <message>
             <source>Looking for the rim ...</source>
-            <translation type="vanished">Der Rand wird gesucht ...</translation>
+            <translation>Der Rand wird gesucht ...</translation>
         </message>
         <message>
             <source>Loupe</source>
@@ -1185,7 +1185,7 @@
         </message>
         <message>
             <source>Measuring ...</source>
-            <translation type="vanished">Wird gemessen ...</translation>
+            <translation>Wird gemessen ...</translation>
         </message>
         <message>
             <source>Merge Stations</source>
@@ -1201,19 +1201,19 @@
         </message>
         <message>
             <source>Next</source>
-            <translation type="vanished">Nächstes</translation>
+            <translation>Nächstes</translation>
         </message>
         <message>
             <source>No elbows are seen between the free ends of the pipes. Measure the pipes on both sides of a bend, or select two pipes.</source>
-            <translation type="vanished">Zwischen den freien Rohrenden sind keine Bögen zu sehen. Messen Sie die Rohre auf beiden Seiten eines Bogens oder wählen Sie zwei Rohre aus.</translation>
+            <translation>Zwischen den freien Rohrenden sind keine Bögen zu sehen. Messen Sie die Rohre auf beiden Seiten eines Bogens oder wählen Sie zwei Rohre aus.</translation>
         </message>
         <message>
             <source>No further pipes are seen. Click on those that are missing with the Pipe tool.</source>
-            <translation type="vanished">Weitere Rohre sind nicht zu sehen. Klicken Sie die fehlenden mit dem Werkzeug „Rohr“ an.</translation>
+            <translation>Weitere Rohre sind nicht zu sehen. Klicken Sie die fehlenden mit dem Werkzeug „Rohr“ an.</translation>
         </message>
         <message>
             <source>No tees, reducers or caps are seen at the free ends of the pipes. Select the pipes that belong to one.</source>
-            <translation type="vanished">An den freien Rohrenden sind keine T-Stücke, Reduzierstücke oder Kappen zu sehen. Wählen Sie die Rohre aus, die zu einem gehören.</translation>
+            <translation>An den freien Rohrenden sind keine T-Stücke, Reduzierstücke oder Kappen zu sehen. Wählen Sie die Rohre aus, die zu einem gehören.</translation>
         </message>
         <message>
             <source>None: everything is determined and nothing is weakly placed.</source>
@@ -1293,7 +1293,7 @@
         </message>
         <message>
             <source>Pipe: click inside it, or on both its edges</source>
-            <translation type="vanished">Rohr: hineinklicken oder auf beide Kanten</translation>
+            <translation>Rohr: hineinklicken oder auf beide Kanten</translation>
         </message>
         <message>
             <source>Pipes from</source>
@@ -1325,15 +1325,15 @@
         </message>
         <message>
             <source>Put all that are ticked into the document</source>
-            <translation type="vanished">Alle angekreuzten ins Dokument übernehmen</translation>
+            <translation>Alle angekreuzten ins Dokument übernehmen</translation>
         </message>
         <message>
             <source>Put the chosen one into the document (Enter)</source>
-            <translation type="vanished">Den gewählten ins Dokument übernehmen (Enter)</translation>
+            <translation>Den gewählten ins Dokument übernehmen (Enter)</translation>
         </message>
         <message>
             <source>Put the chosen pipe into the document (Enter)</source>
-            <translation type="vanished">Das gewählte Rohr ins Dokument übernehmen (Enter)</translation>
+            <translation>Das gewählte Rohr ins Dokument übernehmen (Enter)</translation>
         </message>
         <message>
             <source>Put the elbow between them</source>
@@ -1341,7 +1341,7 @@
         </message>
         <message>
             <source>Put the flange into the document (Enter)</source>
-            <translation type="vanished">Den Flansch ins Dokument übernehmen (Enter)</translation>
+            <translation>Den Flansch ins Dokument übernehmen (Enter)</translation>
         </message>
         <message>
             <source>Quality</source>
@@ -1365,7 +1365,7 @@
         </message>
         <message>
             <source>Radius</source>
-            <translation type="vanished">Radius</translation>
+            <translation>Radius</translation>
         </message>
         <message>
             <source>Reconstruct picks</source>
@@ -1385,7 +1385,7 @@
         </message>
         <message>
             <source>Reject</source>
-            <translation type="vanished">Ablehnen</translation>
+            <translation>Ablehnen</translation>
         </message>
         <message>
             <source>Remove</source>
@@ -1440,6 +1440,10 @@
             <translation>Abweichungen speichern</translation>
         </message>
         <message>
+            <source>Score</source>
+            <translation>Wertung</translation>
+        </message>
+        <message>
             <source>Search band</source>
             <translation>Suchband</translation>
         </message>
@@ -1457,7 +1461,7 @@
         </message>
         <message>
             <source>Set-on branch</source>
-            <translation type="vanished">Aufgesetzter Abzweig</translation>
+            <translation>Aufgesetzter Abzweig</translation>
         </message>
         <message>
             <source>Shift mm</source>
@@ -1469,7 +1473,7 @@
         </message>
         <message>
             <source>Show the next pipe of the list (digits choose directly)</source>
-            <translation type="vanished">Das nächste Rohr der Liste zeigen (Ziffern wählen direkt)</translation>
+            <translation>Das nächste Rohr der Liste zeigen (Ziffern wählen direkt)</translation>
         </message>
         <message>
             <source>Show the parts of the contours that are behind something as dashed lines</source>
@@ -1489,7 +1493,7 @@
         </message>
         <message>
             <source>Size</source>
-            <translation type="vanished">Größe</translation>
+            <translation>Größe</translation>
         </message>
         <message>
             <source>Snap to edges within</source>
@@ -1505,7 +1509,7 @@
         </message>
         <message>
             <source>Standard</source>
-            <translation type="vanished">Norm</translation>
+            <translation>Norm</translation>
         </message>
         <message>
             <source>Standard deviation of its position before and after</source>
@@ -1569,7 +1573,7 @@
         </message>
         <message>
             <source>Take the chosen one off the list</source>
-            <translation type="vanished">Den gewählten aus der Liste nehmen</translation>
+            <translation>Den gewählten aus der Liste nehmen</translation>
         </message>
         <message>
             <source>Tee</source>
@@ -1577,7 +1581,7 @@
         </message>
         <message>
             <source>Tees, Reducers and Caps</source>
-            <translation type="vanished">T-Stücke, Reduzierstücke und Kappen</translation>
+            <translation>T-Stücke, Reduzierstücke und Kappen</translation>
         </message>
         <message>
             <source>That is all. Import photographs of your own with Import Station.</source>
@@ -1609,7 +1613,7 @@
         </message>
         <message>
             <source>The flange facing it, too</source>
-            <translation type="vanished">Auch den Gegenflansch</translation>
+            <translation>Auch den Gegenflansch</translation>
         </message>
         <message>
             <source>The model as designed</source>
@@ -1625,7 +1629,7 @@
         </message>
         <message>
             <source>The pipes that the clicks can mean, the likeliest first: outside diameter, distance, and the quality, which is the mean distance of the image's edges from the contours</source>
-            <translation type="vanished">Die Rohre, die die Klicks meinen können, das wahrscheinlichste zuerst: Außendurchmesser, Entfernung und die Güte, also der mittlere Abstand der Bildkanten von den Konturen</translation>
+            <translation>Die Rohre, die die Klicks meinen können, das wahrscheinlichste zuerst: Außendurchmesser, Entfernung und die Güte, also der mittlere Abstand der Bildkanten von den Konturen</translation>
         </message>
         <message>
             <source>The preferences are not changed. {error}</source>
@@ -1649,11 +1653,11 @@
         </message>
         <message>
             <source>There is no flange to accept yet.</source>
-            <translation type="vanished">Es gibt noch keinen Flansch zu übernehmen.</translation>
+            <translation>Es gibt noch keinen Flansch zu übernehmen.</translation>
         </message>
         <message>
             <source>There is no pipe to accept yet.</source>
-            <translation type="vanished">Es gibt noch kein Rohr zu übernehmen.</translation>
+            <translation>Es gibt noch kein Rohr zu übernehmen.</translation>
         </message>
         <message>
             <source>These files of station {station} are not where they were:</source>
@@ -1677,7 +1681,7 @@
         </message>
         <message>
             <source>Tick the pipes from this confidence on: how much likelier they are than chance, as a logarithm</source>
-            <translation type="vanished">Die Rohre ab dieser Sicherheit ankreuzen: wievielmal wahrscheinlicher als Zufall sie sind, als Logarithmus</translation>
+            <translation>Die Rohre ab dieser Sicherheit ankreuzen: wievielmal wahrscheinlicher als Zufall sie sind, als Logarithmus</translation>
         </message>
         <message>
             <source>Tolerances</source>
@@ -1689,7 +1693,11 @@
         </message>
         <message>
             <source>Type</source>
-            <translation type="vanished">Typ</translation>
+            <translation>Typ</translation>
+        </message>
+        <message>
+            <source>Types and pressure classes, the likeliest first; the score is the logarithm of how likely the images make them, those without one were not compared with the images</source>
+            <translation>Typen und Druckstufen, die wahrscheinlichsten zuerst; die Wertung ist der Logarithmus davon, wie wahrscheinlich die Bilder sie machen; die ohne wurden nicht mit den Bildern verglichen</translation>
         </message>
         <message>
             <source>Types and pressure classes, the likeliest first; those without a confidence were not compared with the images</source>
@@ -1709,7 +1717,7 @@
         </message>
         <message>
             <source>What a click in a photograph means</source>
-            <translation type="vanished">Was ein Klick in einem Foto bedeutet</translation>
+            <translation>Was ein Klick in einem Foto bedeutet</translation>
         </message>
         <message>
             <source>What and how</source>
@@ -1737,7 +1745,7 @@
         </message>
         <message>
             <source>What was found; ticked ones are accepted together</source>
-            <translation type="vanished">Was gefunden wurde; Angekreuztes wird zusammen übernommen</translation>
+            <translation>Was gefunden wurde; Angekreuztes wird zusammen übernommen</translation>
         </message>
         <message>
             <source>Where the model has other coordinates than the document; else both are compared as they stand</source>
@@ -1757,11 +1765,11 @@
         </message>
         <message>
             <source>Which diameters are possible: those of the standard, any, or a certain one</source>
-            <translation type="vanished">Welche Durchmesser möglich sind: die der Norm, beliebige oder ein bestimmter</translation>
+            <translation>Welche Durchmesser möglich sind: die der Norm, beliebige oder ein bestimmter</translation>
         </message>
         <message>
             <source>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</source>
-            <translation type="vanished">Bei einem Biegeradius von {radius:g} mm bliebe von einem Rohr daneben nichts übrig.</translation>
+            <translation>Bei einem Biegeradius von {radius:g} mm bliebe von einem Rohr daneben nichts übrig.</translation>
         </message>
         <message>
             <source>Within the standard's tolerances</source>
@@ -1789,15 +1797,15 @@
         </message>
         <message>
             <source>always an edge</source>
-            <translation type="vanished">immer eine Kante</translation>
+            <translation>immer eine Kante</translation>
         </message>
         <message>
             <source>always the inside</source>
-            <translation type="vanished">immer das Innere</translation>
+            <translation>immer das Innere</translation>
         </message>
         <message>
             <source>an edge where one is marked, else the inside</source>
-            <translation type="vanished">eine Kante, wo eine markiert ist, sonst das Innere</translation>
+            <translation>eine Kante, wo eine markiert ist, sonst das Innere</translation>
         </message>
         <message>
             <source>another task is open in the task panel</source>
@@ -1805,11 +1813,11 @@
         </message>
         <message>
             <source>any (free)</source>
-            <translation type="vanished">beliebig (frei)</translation>
+            <translation>beliebig (frei)</translation>
         </message>
         <message>
             <source>as entered below</source>
-            <translation type="vanished">wie unten eingegeben</translation>
+            <translation>wie unten eingegeben</translation>
         </message>
         <message>
             <source>beyond</source>
@@ -1817,7 +1825,7 @@
         </message>
         <message>
             <source>blind</source>
-            <translation type="vanished">blind</translation>
+            <translation>blind</translation>
         </message>
         <message>
             <source>by kind</source>
@@ -1865,7 +1873,7 @@
         </message>
         <message>
             <source>finding edges</source>
-            <translation type="vanished">Kanten werden gesucht</translation>
+            <translation>Kanten werden gesucht</translation>
         </message>
         <message>
             <source>finding edges...</source>
@@ -1889,7 +1897,7 @@
         </message>
         <message>
             <source>free</source>
-            <translation type="vanished">frei</translation>
+            <translation>frei</translation>
         </message>
         <message>
             <source>give one</source>
@@ -1909,7 +1917,7 @@
         </message>
         <message>
             <source>its photographs are missing</source>
-            <translation type="vanished">seine Fotos fehlen</translation>
+            <translation>seine Fotos fehlen</translation>
         </message>
         <message>
             <source>last seen in {folder}</source>
@@ -1921,11 +1929,11 @@
         </message>
         <message>
             <source>loose plate</source>
-            <translation type="vanished">lose</translation>
+            <translation>lose</translation>
         </message>
         <message>
             <source>loose plate, neck</source>
-            <translation type="vanished">lose, mit Bund</translation>
+            <translation>lose, mit Bund</translation>
         </message>
         <message>
             <source>model.ifc</source>
@@ -1957,7 +1965,7 @@
         </message>
         <message>
             <source>of the standard</source>
-            <translation type="vanished">der Norm</translation>
+            <translation>der Norm</translation>
         </message>
         <message>
             <source>open it again</source>
@@ -1969,7 +1977,7 @@
         </message>
         <message>
             <source>plate</source>
-            <translation type="vanished">glatt</translation>
+            <translation>glatt</translation>
         </message>
         <message>
             <source>press Adjust first</source>
@@ -1993,7 +2001,7 @@
         </message>
         <message>
             <source>say where they are in its photo window</source>
-            <translation type="vanished">geben Sie in seinem Fotofenster an, wo sie sind</translation>
+            <translation>geben Sie in seinem Fotofenster an, wo sie sind</translation>
         </message>
         <message>
             <source>select one of each (Ctrl and click)</source>
@@ -2025,7 +2033,7 @@
         </message>
         <message>
             <source>slip-on</source>
-            <translation type="vanished">Überschieb</translation>
+            <translation>Überschieb</translation>
         </message>
         <message>
             <source>there is no IFC file</source>
@@ -2045,7 +2053,7 @@
         </message>
         <message>
             <source>threaded</source>
-            <translation type="vanished">Gewinde</translation>
+            <translation>Gewinde</translation>
         </message>
         <message>
             <source>up to</source>
@@ -2061,7 +2069,7 @@
         </message>
         <message>
             <source>weld neck</source>
-            <translation type="vanished">Vorschweiß</translation>
+            <translation>Vorschweiß</translation>
         </message>
         <message>
             <source>within their tolerances</source>
@@ -2081,7 +2089,7 @@
         </message>
         <message>
             <source>{count} found. Click on one to choose it.</source>
-            <translation type="vanished">{count} gefunden. Klicken Sie einen an, um ihn zu wählen.</translation>
+            <translation>{count} gefunden. Klicken Sie einen an, um ihn zu wählen.</translation>
         </message>
         <message>
             <source>{count} up to {limit:g} mm</source>
@@ -2097,7 +2105,7 @@
         </message>
         <message>
             <source>{diameter:g} mm, as entered</source>
-            <translation type="vanished">{diameter:g} mm, wie eingegeben</translation>
+            <translation>{diameter:g} mm, wie eingegeben</translation>
         </message>
         <message>
             <source>{station} ({count} components)</source>

@@ -299,6 +299,17 @@
         </message>
     </context>
     <context>
+        <name>PipeWB_Elbows</name>
+        <message>
+            <source>Elbows</source>
+            <translation>Elbows</translation>
+        </message>
+        <message>
+            <source>Find the elbows between the pipes, or between two selected pipes, and choose their bend radius</source>
+            <translation>Find the elbows between the pipes, or between two selected pipes, and choose their bend radius</translation>
+        </message>
+    </context>
+    <context>
         <name>PipeWB_ExampleProject</name>
         <message>
             <source>Example project: dummy station</source>
@@ -318,6 +329,39 @@
         <message>
             <source>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV, as a report or as a picture</source>
             <translation>Export pipes and fittings (all, or those selected) as IFC, STEP, JSON, CSV, as a report or as a picture</translation>
+        </message>
+    </context>
+    <context>
+        <name>PipeWB_FindPipes</name>
+        <message>
+            <source>Find Pipes</source>
+            <translation>Find Pipes</translation>
+        </message>
+        <message>
+            <source>Look for pipes in the whole station without any click; each is proposed and accepted or rejected</source>
+            <translation>Look for pipes in the whole station without any click; each is proposed and accepted or rejected</translation>
+        </message>
+    </context>
+    <context>
+        <name>PipeWB_Fittings</name>
+        <message>
+            <source>Find tees, reducers and caps at the pipes, or at the selected pipes</source>
+            <translation>Find tees, reducers and caps at the pipes, or at the selected pipes</translation>
+        </message>
+        <message>
+            <source>Tees, Reducers and Caps</source>
+            <translation>Tees, Reducers and Caps</translation>
+        </message>
+    </context>
+    <context>
+        <name>PipeWB_Flange</name>
+        <message>
+            <source>Flange</source>
+            <translation>Flange</translation>
+        </message>
+        <message>
+            <source>Measure a flange: click on the straight edge of its rim; or give the selected flange another type</source>
+            <translation>Measure a flange: click on the straight edge of its rim; or give the selected flange another type</translation>
         </message>
     </context>
     <context>
@@ -351,6 +395,17 @@
         <message>
             <source>Show the station's photographs side by side, with the contours of pipes and fittings</source>
             <translation>Show the station's photographs side by side, with the contours of pipes and fittings</translation>
+        </message>
+    </context>
+    <context>
+        <name>PipeWB_Pipe</name>
+        <message>
+            <source>Measure a pipe: one click inside it or one on each of its edges in a photograph</source>
+            <translation>Measure a pipe: one click inside it or one on each of its edges in a photograph</translation>
+        </message>
+        <message>
+            <source>Pipe</source>
+            <translation>Pipe</translation>
         </message>
     </context>
     <context>
@@ -405,6 +460,10 @@
             <translation>&lt;b&gt;{stations}&lt;/b&gt; become one: {pairs} pairs, {count} components, σ₀ {sigma0}</translation>
         </message>
         <message>
+            <source>A click is</source>
+            <translation>A click is</translation>
+        </message>
+        <message>
             <source>A file that is there is replaced</source>
             <translation>A file that is there is replaced</translation>
         </message>
@@ -425,6 +484,14 @@
             <translation>A weak condition: what the images say clearly is stronger</translation>
         </message>
         <message>
+            <source>Accept</source>
+            <translation>Accept</translation>
+        </message>
+        <message>
+            <source>Accept the {count} ticked</source>
+            <translation>Accept the {count} ticked</translation>
+        </message>
+        <message>
             <source>Add ...</source>
             <translation>Add ...</translation>
         </message>
@@ -435,6 +502,10 @@
         <message>
             <source>Add a folder with tables</source>
             <translation>Add a folder with tables</translation>
+        </message>
+        <message>
+            <source>Add the flange on the other side of the gasket as well, where one is seen</source>
+            <translation>Add the flange on the other side of the gasket as well, where one is seen</translation>
         </message>
         <message>
             <source>Adjust</source>
@@ -469,6 +540,10 @@
             <translation>An arrow from each contour point that counts to its edge, enlarged by the window's slider</translation>
         </message>
         <message>
+            <source>Angle</source>
+            <translation>Angle</translation>
+        </message>
+        <message>
             <source>Angle °</source>
             <translation>Angle °</translation>
         </message>
@@ -501,8 +576,24 @@
             <translation>Assigned by hand: {pairs}</translation>
         </message>
         <message>
+            <source>At</source>
+            <translation>At</translation>
+        </message>
+        <message>
             <source>Bad</source>
             <translation>Bad</translation>
+        </message>
+        <message>
+            <source>Bend</source>
+            <translation>Bend</translation>
+        </message>
+        <message>
+            <source>Bend radius of the chosen elbow: one of the standard, or a free one</source>
+            <translation>Bend radius of the chosen elbow: one of the standard, or a free one</translation>
+        </message>
+        <message>
+            <source>Between</source>
+            <translation>Between</translation>
         </message>
         <message>
             <source>Between both after the adjustment of the stations' places; of pipes the larger of both ends</source>
@@ -541,6 +632,10 @@
             <translation>Cap</translation>
         </message>
         <message>
+            <source>Choose another type for {name}; its face stays where it is.</source>
+            <translation>Choose another type for {name}; its face stays where it is.</translation>
+        </message>
+        <message>
             <source>Choose folder and name</source>
             <translation>Choose folder and name</translation>
         </message>
@@ -561,8 +656,32 @@
             <translation>Choose the tool and click on both edges of a pipe in one photograph, or once inside it. The proposed pipe is drawn into all photographs; Enter accepts it, digits choose another proposal, Esc steps back.</translation>
         </message>
         <message>
+            <source>Clear</source>
+            <translation>Clear</translation>
+        </message>
+        <message>
+            <source>Click again, change the diameter, or step back with Esc.</source>
+            <translation>Click again, change the diameter, or step back with Esc.</translation>
+        </message>
+        <message>
+            <source>Click inside a pipe, or on one of its edges.</source>
+            <translation>Click inside a pipe, or on one of its edges.</translation>
+        </message>
+        <message>
             <source>Click on a flange of a pipe, then choose its type and pressure class from those that fit.</source>
             <translation>Click on a flange of a pipe, then choose its type and pressure class from those that fit.</translation>
+        </message>
+        <message>
+            <source>Click on a proposal to choose it; Enter accepts it, Esc leaves</source>
+            <translation>Click on a proposal to choose it; Enter accepts it, Esc leaves</translation>
+        </message>
+        <message>
+            <source>Click on the other edge of the pipe, in the same photograph.</source>
+            <translation>Click on the other edge of the pipe, in the same photograph.</translation>
+        </message>
+        <message>
+            <source>Click on the straight edge of a flange's rim. Its pipe must have been measured.</source>
+            <translation>Click on the straight edge of a flange's rim. Its pipe must have been measured.</translation>
         </message>
         <message>
             <source>Click to choose another colour</source>
@@ -617,6 +736,10 @@
             <translation>Computer</translation>
         </message>
         <message>
+            <source>Confidence</source>
+            <translation>Confidence</translation>
+        </message>
+        <message>
             <source>Contours</source>
             <translation>Contours</translation>
         </message>
@@ -637,12 +760,20 @@
             <translation>Contrast of the photographs</translation>
         </message>
         <message>
+            <source>D {D:g} mm, C {C:g} mm, length {length:g} mm</source>
+            <translation>D {D:g} mm, C {C:g} mm, length {length:g} mm</translation>
+        </message>
+        <message>
             <source>Dash what is hidden</source>
             <translation>Dash what is hidden</translation>
         </message>
         <message>
             <source>Deviations</source>
             <translation>Deviations</translation>
+        </message>
+        <message>
+            <source>Diameter</source>
+            <translation>Diameter</translation>
         </message>
         <message>
             <source>Diameter mm</source>
@@ -673,6 +804,10 @@
             <translation>Down</translation>
         </message>
         <message>
+            <source>Drag to make the pipe thicker or thinner: it moves away or nearer, so that its clicked edges stay</source>
+            <translation>Drag to make the pipe thicker or thinner: it moves away or nearer, so that its clicked edges stay</translation>
+        </message>
+        <message>
             <source>Edges</source>
             <translation>Edges</translation>
         </message>
@@ -693,6 +828,10 @@
             <translation>Elbow</translation>
         </message>
         <message>
+            <source>Elbows</source>
+            <translation>Elbows</translation>
+        </message>
+        <message>
             <source>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</source>
             <translation>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</translation>
         </message>
@@ -711,6 +850,14 @@
         <message>
             <source>Enlarge the pixels around the pointer (L)</source>
             <translation>Enlarge the pixels around the pointer (L)</translation>
+        </message>
+        <message>
+            <source>Enter accepts the flange. Choose another type if it is not the right one.</source>
+            <translation>Enter accepts the flange. Choose another type if it is not the right one.</translation>
+        </message>
+        <message>
+            <source>Enter accepts the pipe. Digits choose another one. Esc steps back.</source>
+            <translation>Enter accepts the pipe. Digits choose another one. Esc steps back.</translation>
         </message>
         <message>
             <source>Exactly as in the standard</source>
@@ -745,12 +892,20 @@
             <translation>Find Photographs</translation>
         </message>
         <message>
+            <source>Find Pipes</source>
+            <translation>Find Pipes</translation>
+        </message>
+        <message>
             <source>Find What They Share</source>
             <translation>Find What They Share</translation>
         </message>
         <message>
             <source>Find them...</source>
             <translation>Find them...</translation>
+        </message>
+        <message>
+            <source>Finding pipes</source>
+            <translation>Finding pipes</translation>
         </message>
         <message>
             <source>First steps</source>
@@ -765,8 +920,20 @@
             <translation>Fit the model to the pipework</translation>
         </message>
         <message>
+            <source>Fix the outside diameter; the projection follows, and the pipe is measured with it</source>
+            <translation>Fix the outside diameter; the projection follows, and the pipe is measured with it</translation>
+        </message>
+        <message>
+            <source>Fixed at</source>
+            <translation>Fixed at</translation>
+        </message>
+        <message>
             <source>Flange</source>
             <translation>Flange</translation>
+        </message>
+        <message>
+            <source>Flange: click on the straight edge of its rim</source>
+            <translation>Flange: click on the straight edge of its rim</translation>
         </message>
         <message>
             <source>Folder with the photographs</source>
@@ -781,12 +948,28 @@
             <translation>Forget</translation>
         </message>
         <message>
+            <source>Forget the click</source>
+            <translation>Forget the click</translation>
+        </message>
+        <message>
+            <source>Forget the clicks</source>
+            <translation>Forget the clicks</translation>
+        </message>
+        <message>
             <source>Format</source>
             <translation>Format</translation>
         </message>
         <message>
+            <source>Free bend radius; the projection follows</source>
+            <translation>Free bend radius; the projection follows</translation>
+        </message>
+        <message>
             <source>Free, as measured</source>
             <translation>Free, as measured</translation>
+        </message>
+        <message>
+            <source>From</source>
+            <translation>From</translation>
         </message>
         <message>
             <source>From photographs to a pipeline. Each step is checked off when the document shows it done; undo opens it again.</source>
@@ -857,6 +1040,10 @@
             <translation>In the browser</translation>
         </message>
         <message>
+            <source>In the document: {names}</source>
+            <translation>In the document: {names}</translation>
+        </message>
+        <message>
             <source>In the station that was there before</source>
             <translation>In the station that was there before</translation>
         </message>
@@ -889,6 +1076,10 @@
             <translation>Largest distance {distance:.1f} mm.</translation>
         </message>
         <message>
+            <source>Length</source>
+            <translation>Length</translation>
+        </message>
+        <message>
             <source>Length of the residuals</source>
             <translation>Length of the residuals</translation>
         </message>
@@ -911,6 +1102,18 @@
         <message>
             <source>Look how the stations lie to each other; the document stays as it is until you press OK</source>
             <translation>Look how the stations lie to each other; the document stays as it is until you press OK</translation>
+        </message>
+        <message>
+            <source>Looking ...</source>
+            <translation>Looking ...</translation>
+        </message>
+        <message>
+            <source>Looking for more ...</source>
+            <translation>Looking for more ...</translation>
+        </message>
+        <message>
+            <source>Looking for the rim ...</source>
+            <translation>Looking for the rim ...</translation>
         </message>
         <message>
             <source>Loupe</source>
@@ -937,6 +1140,10 @@
             <translation>Measuring</translation>
         </message>
         <message>
+            <source>Measuring ...</source>
+            <translation>Measuring ...</translation>
+        </message>
+        <message>
             <source>Merge Stations</source>
             <translation>Merge Stations</translation>
         </message>
@@ -947,6 +1154,22 @@
         <message>
             <source>Move the chosen folder up</source>
             <translation>Move the chosen folder up</translation>
+        </message>
+        <message>
+            <source>Next</source>
+            <translation>Next</translation>
+        </message>
+        <message>
+            <source>No elbows are seen between the free ends of the pipes. Measure the pipes on both sides of a bend, or select two pipes.</source>
+            <translation>No elbows are seen between the free ends of the pipes. Measure the pipes on both sides of a bend, or select two pipes.</translation>
+        </message>
+        <message>
+            <source>No further pipes are seen. Click on those that are missing with the Pipe tool.</source>
+            <translation>No further pipes are seen. Click on those that are missing with the Pipe tool.</translation>
+        </message>
+        <message>
+            <source>No tees, reducers or caps are seen at the free ends of the pipes. Select the pipes that belong to one.</source>
+            <translation>No tees, reducers or caps are seen at the free ends of the pipes. Select the pipes that belong to one.</translation>
         </message>
         <message>
             <source>None: everything is determined and nothing is weakly placed.</source>
@@ -1025,6 +1248,10 @@
             <translation>Pipe</translation>
         </message>
         <message>
+            <source>Pipe: click inside it, or on both its edges</source>
+            <translation>Pipe: click inside it, or on both its edges</translation>
+        </message>
+        <message>
             <source>Pipes from</source>
             <translation>Pipes from</translation>
         </message>
@@ -1049,8 +1276,24 @@
             <translation>Poor up to</translation>
         </message>
         <message>
+            <source>Put all that are ticked into the document</source>
+            <translation>Put all that are ticked into the document</translation>
+        </message>
+        <message>
+            <source>Put the chosen one into the document (Enter)</source>
+            <translation>Put the chosen one into the document (Enter)</translation>
+        </message>
+        <message>
+            <source>Put the chosen pipe into the document (Enter)</source>
+            <translation>Put the chosen pipe into the document (Enter)</translation>
+        </message>
+        <message>
             <source>Put the elbow between them</source>
             <translation>Put the elbow between them</translation>
+        </message>
+        <message>
+            <source>Put the flange into the document (Enter)</source>
+            <translation>Put the flange into the document (Enter)</translation>
         </message>
         <message>
             <source>Quality</source>
@@ -1069,6 +1312,10 @@
             <translation>RMS px</translation>
         </message>
         <message>
+            <source>Radius</source>
+            <translation>Radius</translation>
+        </message>
+        <message>
             <source>Reconstruct picks</source>
             <translation>Reconstruct picks</translation>
         </message>
@@ -1083,6 +1330,10 @@
         <message>
             <source>Reference</source>
             <translation>Reference</translation>
+        </message>
+        <message>
+            <source>Reject</source>
+            <translation>Reject</translation>
         </message>
         <message>
             <source>Remove</source>
@@ -1137,6 +1388,10 @@
             <translation>Save deviations</translation>
         </message>
         <message>
+            <source>Score</source>
+            <translation>Score</translation>
+        </message>
+        <message>
             <source>Search band</source>
             <translation>Search band</translation>
         </message>
@@ -1153,12 +1408,20 @@
             <translation>Set everything on this page to what it was at first</translation>
         </message>
         <message>
+            <source>Set-on branch</source>
+            <translation>Set-on branch</translation>
+        </message>
+        <message>
             <source>Shift mm</source>
             <translation>Shift mm</translation>
         </message>
         <message>
             <source>Show one pixel of the photograph as one of the screen (Ctrl+1)</source>
             <translation>Show one pixel of the photograph as one of the screen (Ctrl+1)</translation>
+        </message>
+        <message>
+            <source>Show the next pipe of the list (digits choose directly)</source>
+            <translation>Show the next pipe of the list (digits choose directly)</translation>
         </message>
         <message>
             <source>Show the parts of the contours that are behind something as dashed lines</source>
@@ -1177,6 +1440,10 @@
             <translation>Show the same part of the object in the middle of all photographs</translation>
         </message>
         <message>
+            <source>Size</source>
+            <translation>Size</translation>
+        </message>
+        <message>
             <source>Snap to edges within</source>
             <translation>Snap to edges within</translation>
         </message>
@@ -1187,6 +1454,10 @@
         <message>
             <source>Something else is still being computed; wait for its end or cancel it</source>
             <translation>Something else is still being computed; wait for its end or cancel it</translation>
+        </message>
+        <message>
+            <source>Standard</source>
+            <translation>Standard</translation>
         </message>
         <message>
             <source>Standard deviation of its position before and after</source>
@@ -1249,8 +1520,16 @@
             <translation>Take the chosen folder from the list; its files stay</translation>
         </message>
         <message>
+            <source>Take the chosen one off the list</source>
+            <translation>Take the chosen one off the list</translation>
+        </message>
+        <message>
             <source>Tee</source>
             <translation>Tee</translation>
+        </message>
+        <message>
+            <source>Tees, Reducers and Caps</source>
+            <translation>Tees, Reducers and Caps</translation>
         </message>
         <message>
             <source>That is all. Import photographs of your own with Import Station.</source>
@@ -1281,6 +1560,10 @@
             <translation>The distance in standard deviations; 4 and more does not fit</translation>
         </message>
         <message>
+            <source>The flange facing it, too</source>
+            <translation>The flange facing it, too</translation>
+        </message>
+        <message>
             <source>The model as designed</source>
             <translation>The model as designed</translation>
         </message>
@@ -1291,6 +1574,10 @@
         <message>
             <source>The photographs are not shown: {packages} is missing</source>
             <translation>The photographs are not shown: {packages} is missing</translation>
+        </message>
+        <message>
+            <source>The pipes that the clicks can mean, the likeliest first: outside diameter, distance, and the quality, which is the mean distance of the image's edges from the contours</source>
+            <translation>The pipes that the clicks can mean, the likeliest first: outside diameter, distance, and the quality, which is the mean distance of the image's edges from the contours</translation>
         </message>
         <message>
             <source>The preferences are not changed. {error}</source>
@@ -1313,6 +1600,14 @@
             <translation>The table for a spreadsheet</translation>
         </message>
         <message>
+            <source>There is no flange to accept yet.</source>
+            <translation>There is no flange to accept yet.</translation>
+        </message>
+        <message>
+            <source>There is no pipe to accept yet.</source>
+            <translation>There is no pipe to accept yet.</translation>
+        </message>
+        <message>
             <source>They make most of the file's size</source>
             <translation>They make most of the file's size</translation>
         </message>
@@ -1329,12 +1624,24 @@
             <translation>Threads</translation>
         </message>
         <message>
+            <source>Tick the pipes from this confidence on: how much likelier they are than chance, as a logarithm</source>
+            <translation>Tick the pipes from this confidence on: how much likelier they are than chance, as a logarithm</translation>
+        </message>
+        <message>
             <source>Tolerances</source>
             <translation>Tolerances</translation>
         </message>
         <message>
             <source>Turn °</source>
             <translation>Turn °</translation>
+        </message>
+        <message>
+            <source>Type</source>
+            <translation>Type</translation>
+        </message>
+        <message>
+            <source>Types and pressure classes, the likeliest first; the score is the logarithm of how likely the images make them, those without one were not compared with the images</source>
+            <translation>Types and pressure classes, the likeliest first; the score is the logarithm of how likely the images make them, those without one were not compared with the images</translation>
         </message>
         <message>
             <source>Up</source>
@@ -1347,6 +1654,10 @@
         <message>
             <source>Warnings</source>
             <translation>Warnings</translation>
+        </message>
+        <message>
+            <source>What a click in a photograph means</source>
+            <translation>What a click in a photograph means</translation>
         </message>
         <message>
             <source>What and how</source>
@@ -1373,6 +1684,10 @@
             <translation>What they share</translation>
         </message>
         <message>
+            <source>What was found; ticked ones are accepted together</source>
+            <translation>What was found; ticked ones are accepted together</translation>
+        </message>
+        <message>
             <source>Where the model has other coordinates than the document; else both are compared as they stand</source>
             <translation>Where the model has other coordinates than the document; else both are compared as they stand</translation>
         </message>
@@ -1387,6 +1702,14 @@
         <message>
             <source>Whether it still counts</source>
             <translation>Whether it still counts</translation>
+        </message>
+        <message>
+            <source>Which diameters are possible: those of the standard, any, or a certain one</source>
+            <translation>Which diameters are possible: those of the standard, any, or a certain one</translation>
+        </message>
+        <message>
+            <source>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</source>
+            <translation>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</translation>
         </message>
         <message>
             <source>Within the standard's tolerances</source>
@@ -1413,12 +1736,36 @@
             <translation>all components ({count})</translation>
         </message>
         <message>
+            <source>always an edge</source>
+            <translation>always an edge</translation>
+        </message>
+        <message>
+            <source>always the inside</source>
+            <translation>always the inside</translation>
+        </message>
+        <message>
+            <source>an edge where one is marked, else the inside</source>
+            <translation>an edge where one is marked, else the inside</translation>
+        </message>
+        <message>
             <source>another task is open in the task panel</source>
             <translation>another task is open in the task panel</translation>
         </message>
         <message>
+            <source>any (free)</source>
+            <translation>any (free)</translation>
+        </message>
+        <message>
+            <source>as entered below</source>
+            <translation>as entered below</translation>
+        </message>
+        <message>
             <source>beyond</source>
             <translation>beyond</translation>
+        </message>
+        <message>
+            <source>blind</source>
+            <translation>blind</translation>
         </message>
         <message>
             <source>by kind</source>
@@ -1465,6 +1812,10 @@
             <translation>exact</translation>
         </message>
         <message>
+            <source>finding edges</source>
+            <translation>finding edges</translation>
+        </message>
+        <message>
             <source>finding edges...</source>
             <translation>finding edges...</translation>
         </message>
@@ -1485,6 +1836,10 @@
             <translation>follows from its pipes</translation>
         </message>
         <message>
+            <source>free</source>
+            <translation>free</translation>
+        </message>
+        <message>
             <source>give one</source>
             <translation>give one</translation>
         </message>
@@ -1501,12 +1856,24 @@
             <translation>its document was closed</translation>
         </message>
         <message>
+            <source>its photographs are missing</source>
+            <translation>its photographs are missing</translation>
+        </message>
+        <message>
             <source>last seen in {folder}</source>
             <translation>last seen in {folder}</translation>
         </message>
         <message>
             <source>left out</source>
             <translation>left out</translation>
+        </message>
+        <message>
+            <source>loose plate</source>
+            <translation>loose plate</translation>
+        </message>
+        <message>
+            <source>loose plate, neck</source>
+            <translation>loose plate, neck</translation>
         </message>
         <message>
             <source>model.ifc</source>
@@ -1537,12 +1904,20 @@
             <translation>nothing was put together yet</translation>
         </message>
         <message>
+            <source>of the standard</source>
+            <translation>of the standard</translation>
+        </message>
+        <message>
             <source>open it again</source>
             <translation>open it again</translation>
         </message>
         <message>
             <source>open one, or import a station first</source>
             <translation>open one, or import a station first</translation>
+        </message>
+        <message>
+            <source>plate</source>
+            <translation>plate</translation>
         </message>
         <message>
             <source>press Adjust first</source>
@@ -1563,6 +1938,10 @@
         <message>
             <source>reading...</source>
             <translation>reading...</translation>
+        </message>
+        <message>
+            <source>say where they are in its photo window</source>
+            <translation>say where they are in its photo window</translation>
         </message>
         <message>
             <source>select one of each (Ctrl and click)</source>
@@ -1593,6 +1972,10 @@
             <translation>selected components ({count})</translation>
         </message>
         <message>
+            <source>slip-on</source>
+            <translation>slip-on</translation>
+        </message>
+        <message>
             <source>there is no IFC file</source>
             <translation>there is no IFC file</translation>
         </message>
@@ -1609,6 +1992,10 @@
             <translation>there is no result yet</translation>
         </message>
         <message>
+            <source>threaded</source>
+            <translation>threaded</translation>
+        </message>
+        <message>
             <source>up to</source>
             <translation>up to</translation>
         </message>
@@ -1619,6 +2006,10 @@
         <message>
             <source>weak</source>
             <translation>weak</translation>
+        </message>
+        <message>
+            <source>weld neck</source>
+            <translation>weld neck</translation>
         </message>
         <message>
             <source>within their tolerances</source>
@@ -1637,6 +2028,10 @@
             <translation>{count} beyond</translation>
         </message>
         <message>
+            <source>{count} found. Click on one to choose it.</source>
+            <translation>{count} found. Click on one to choose it.</translation>
+        </message>
+        <message>
             <source>{count} up to {limit:g} mm</source>
             <translation>{count} up to {limit:g} mm</translation>
         </message>
@@ -1647,6 +2042,10 @@
         <message>
             <source>{count} without counterpart</source>
             <translation>{count} without counterpart</translation>
+        </message>
+        <message>
+            <source>{diameter:g} mm, as entered</source>
+            <translation>{diameter:g} mm, as entered</translation>
         </message>
         <message>
             <source>{station} ({count} components)</source>

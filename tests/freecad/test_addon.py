@@ -29,8 +29,8 @@ def test_freecad_reads_package_xml():
 
 def test_package_xml_names_every_dependency_of_the_project():
     project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    wanted = set(re.findall(r'^  "([a-z-]+)[><]', project.split("dependencies = [")[1].split("]\n")[0], re.MULTILINE))
-    named = set(re.findall(r'<depend type="python">([a-z-]+)</depend>', (ROOT / "package.xml").read_text(encoding="utf-8")))
+    wanted = set(re.findall(r'^  "([a-z0-9-]+)[><]', project.split("dependencies = [")[1].split("]\n")[0], re.MULTILINE))
+    named = set(re.findall(r'<depend type="python">([a-z0-9-]+)</depend>', (ROOT / "package.xml").read_text(encoding="utf-8")))
     assert named == wanted
 
 

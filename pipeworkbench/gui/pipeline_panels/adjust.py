@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.adjusting import apply_adjustment, compute, state_of, tasks_of
 from pipeworkbench.features.document import components_in
+from pipeworkbench.features.preferences import preferences
 from pipeworkbench.gui.compat import QtWidgets
 from pipeworkbench.gui.panel import Buttons, Panel
 from pipeworkbench.gui.pipeline_panels.residuals import ResidualVectors
@@ -62,6 +63,7 @@ class AdjustPanel(Panel):
             (tr("exact"), tr("within their tolerances"), tr("not trusted")),
             tr("Diameters, bend radii and flange dimensions of standards; sizes that are no standard's are always measured"),
         )
+        self.sizes.setCurrentIndex(SIZES.index(preferences().sizes))
         form.addRow(tr("Standard sizes"), self.sizes)
         self.reach = amount(
             3.0, (2.0, 100.0), "px", 0, tr("How far from the contours edges are looked for: more where components lie beside their pictures")
@@ -74,6 +76,7 @@ class AdjustPanel(Panel):
             tr("Level, plumb and square runs"),
             tr("Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else"),
         )
+        self.aligned.setChecked(preferences().aligned)
         form.addRow(self.aligned)
         self.to_neighbours = switch(
             "to_neighbours",
@@ -97,7 +100,7 @@ class AdjustPanel(Panel):
         reach = self.reach.value()
         basis = AdjustmentSettings.for_rough_values(reach) if reach > FAR_PX else AdjustmentSettings(ranges=(reach, 2.0))
         sizes: Any = SIZES[self.sizes.currentIndex()]
-        return replace(basis, sizes=sizes, aligned=self.aligned.isChecked(), gasket=self.gasket.value())
+        return replace(basis, sizes=sizes, aligned=self.aligned.isChecked(), gasket=self.gasket.value(), snooping=preferences().outlier_limit)
 
     def _count(self) -> None:
         """Say how many components each choice means."""

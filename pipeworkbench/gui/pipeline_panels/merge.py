@@ -9,6 +9,7 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.features.adjusting import frames_of, state_of
 from pipeworkbench.features.document import components_in
 from pipeworkbench.features.merging import apply_merge, compute, merge_task
+from pipeworkbench.features.preferences import adjustment_settings
 from pipeworkbench.gui.compat import QtCore, QtWidgets
 from pipeworkbench.gui.panel import Buttons, Panel
 from pipeworkbench.gui.pipeline_panels.overlay import Colour, Overlay
@@ -138,10 +139,8 @@ class MergePanel(Panel):
         self.assigned.setText(tr("Assigned by hand: {pairs}").format(pairs=", ".join(f"{a} = {b}" for a, b in self._assignments)))
 
     def _compute(self, chosen: tuple[CandidatePose, ...] = ()) -> None:
-        from pipeworkbench.recon.adjust import AdjustmentSettings
-
         document = self.document
-        adjustment = AdjustmentSettings() if self.adjusted.isChecked() else None
+        adjustment = adjustment_settings() if self.adjusted.isChecked() else None
         task = merge_task(document, self.frames(), with_images=adjustment is not None)
         assignments = tuple(self._assignments)
         state = state_of(document)
