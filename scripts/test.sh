@@ -36,7 +36,7 @@ export PYTHONPATH="$root:$site"
 
 say "inside FreeCAD, without a window"
 PIPEWORKBENCH_TESTS="$root/tests/freecad" PIPEWORKBENCH_EXIT="$work/freecad.exit" \
-  timeout 600 freecadcmd "$root/tests/run_in_freecad.py" >"$work/freecad.log" 2>&1 || true
+  timeout 1200 freecadcmd "$root/tests/run_in_freecad.py" >"$work/freecad.log" 2>&1 || true
 cat "$work/freecad.log"; verdict freecad
 
 say "inside FreeCAD's window under Xvfb"
@@ -45,7 +45,7 @@ mkdir -p "$mods"
 ln -sfn "$root" "$mods/PipeWorkbench"
 cp tests/gui/user.cfg "$work/user.cfg"
 PIPEWORKBENCH_TESTS="$root/tests/gui" PIPEWORKBENCH_EXIT="$work/gui.exit" QTWEBENGINE_DISABLE_SANDBOX=1 \
-  timeout 600 xvfb-run -a -s "-screen 0 1600x1000x24" \
+  timeout 1200 xvfb-run -a -s "-screen 0 1600x1000x24" \
   freecad -u "$work/user.cfg" "$root/tests/run_in_freecad.py" >"$work/gui.log" 2>&1 || true
 cat "$work/gui.log"; verdict gui
 
