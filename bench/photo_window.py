@@ -7,7 +7,11 @@ PIPEWORKBENCH_STATION names another station.json than the bundled sample's. The 
 - import to visible: from the file to the last photograph on the screen;
 - hover: a movement of the pointer until the highlighted edge and the search band are painted;
 - frame: a zoom or pan step until all photographs are painted, with all layers that are on;
-- projection: a candidate pipe's radius changes, its contour is computed in all images and painted.
+- projection: a candidate pipe's radius changes, its contour is computed in all images and painted;
+- pick: from the second click of the Pipe tool on an edge until a pipe is drawn, and until the answer is complete (the sample's first five picks);
+- radius drag: the tool's slider moves until the pipe is painted in all photographs;
+- document: one diameter changes in 300 components, until their solids are made and the window is up to date again;
+- language: until menus and toolbars are translated.
 """
 
 from __future__ import annotations
@@ -30,6 +34,7 @@ from pipeworkbench.gui.compat import QtCore, QtWidgets, qt_module
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLE = ROOT / "resources" / "samples" / "dummy" / "A" / "station.json"
+PICKS = 5
 LARGER = (4000, 3000)  # 12 megapixels
 STEPS = 60
 DEADLINE_S = 120.0
@@ -42,12 +47,16 @@ def main() -> None:
     measure(source)
     with tempfile.TemporaryDirectory() as folder:
         measure(enlarged(source, Path(folder)))
+    measure_picks()
+    measure_document()
+    measure_language()
+    print(f"load of the machine in the last minute {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors")
 
 
 def measure(source: Path) -> None:
     """Print the figures of one station."""
     from pipeworkbench.commands.import_station import import_station
-    from pipeworkbench.gui.photos.window import open_photo_window
+    from pipeworkbench.gui.photos.windows import open_photo_window
 
     document = FreeCAD.newDocument("bench")
     began = time.perf_counter()
@@ -80,6 +89,91 @@ def measure(source: Path) -> None:
     tell("projection", [timed(window, lambda i=i: project(window, 50.0 + i)) for i in range(STEPS)])
     FreeCAD.closeDocument(document.Name)
     wait_until(lambda: FreeCAD.ActiveDocument is None)
+
+
+def measure_picks() -> None:
+    """Print how long the Pipe tool takes for picks of the sample, and how it follows its slider."""
+    from pipeworkbench.commands.import_station import import_station
+    from pipeworkbench.gui.tools.pipe_tool import PipeTool
+
+    document = FreeCAD.newDocument("picks")
+    tool = PipeTool(import_station(SAMPLE, document))
+    tool.open()
+    wait_until(lambda: tool.window.views is not None)
+    picks = json.loads(SAMPLE.with_name("picks.json").read_text(encoding="utf-8"))["picks"]
+    firsts, answers = [], []
+    print()
+    for pick in [pick for pick in picks if pick["kind"] == "pipe"][:PICKS]:
+        one, other = np.mean(pick["edges"], axis=1)
+        tool.window.show_place(pick["camera"], tuple(((one + other) / 2).tolist()), 1.0)
+        painted(tool.window)
+        click(tool.window, pick["camera"], one)
+        began = time.perf_counter()
+        click(tool.window, pick["camera"], other)
+        wait_until(lambda: tool.measurement.shown is not None or not tool.measurement.is_measuring)
+        painted(tool.window)
+        firsts.append(time.perf_counter() - began)
+        wait_until(lambda: not tool.measurement.is_measuring)
+        answers.append(time.perf_counter() - began)
+        if len(answers) < PICKS:
+            while tool.measurement.touches:
+                tool.window.stepped_back.emit()
+    for name, times in (("pick to projection", firsts), ("pick to answer", answers)):
+        print(f"{name:18s} {np.median(times):6.2f} s median, {max(times):6.2f} s worst  ({len(times)} picks)", flush=True)
+    slider = tool.form.findChild(QtWidgets.QSlider, "drag")
+    slider.setSliderDown(True)
+    tell("radius drag", [timed(tool.window, lambda i=i: slider.setValue(3 * i)) for i in range(1, STEPS + 1)])
+    tool.close()
+    FreeCAD.closeDocument(document.Name)
+    wait_until(lambda: FreeCAD.ActiveDocument is None)
+
+
+def click(window: Any, camera: str, point: Any) -> None:
+    """Click on a pixel of a photograph that the window shows."""
+    canvas = window.canvas(camera)
+    place = canvas.screen_at((float(point[0]), float(point[1]))).toPoint()
+    qt_module("QtTest").QTest.mouseClick(canvas, QtCore.Qt.MouseButton.LeftButton, QtCore.Qt.KeyboardModifier.NoModifier, place)
+
+
+def measure_document() -> None:
+    """Print how long one changed diameter takes in the document of bench/recompute.py, with its 3D view."""
+    sys.path.insert(0, str(ROOT / "bench"))
+    from recompute import components
+
+    from pipeworkbench.features.document import add_pipeline
+    from pipeworkbench.gui.view_providers import show
+
+    document = FreeCAD.newDocument("large")
+    document.UndoMode = 1
+    objects = list(add_pipeline(document, components()))
+    for obj in objects:
+        show(obj)
+    document.recompute()
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+    QtWidgets.QApplication.processEvents()
+    pipe = next(obj for obj in objects if obj.ComponentId == "04-P6")
+    times = []
+    for size in ("DN 65", "DN 40", "DN 80", "DN 40", "DN 50"):
+        began = time.perf_counter()
+        document.openTransaction("change")
+        pipe.NominalDiameter = size
+        document.recompute()
+        document.commitTransaction()
+        QtWidgets.QApplication.processEvents()
+        times.append(time.perf_counter() - began)
+    print(f"{'one diameter':18s} {np.median(times):6.2f} s median, {max(times):6.2f} s worst  ({len(objects)} components)", flush=True)
+    FreeCAD.closeDocument(document.Name)
+
+
+def measure_language() -> None:
+    """Print how long FreeCAD takes to change its language with this workbench."""
+    times = []
+    for language in ("German", "English") * 2:
+        began = time.perf_counter()
+        FreeCADGui.setLocale(language)
+        QtWidgets.QApplication.processEvents()
+        times.append(time.perf_counter() - began)
+    print(f"{'language':18s} {np.median(times):6.2f} s median, {max(times):6.2f} s worst", flush=True)
 
 
 def hovering(window: Any) -> list[float]:

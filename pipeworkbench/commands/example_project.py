@@ -18,7 +18,7 @@ class ExampleProject(Command):
     def run(self) -> None:
         """Make the document, show its photographs and start the guide."""
         from pipeworkbench.features.document import stations_in
-        from pipeworkbench.gui.photos.window import open_photo_window
+        from pipeworkbench.gui.photos.windows import open_photo_window
         from pipeworkbench.gui.tour.example import make_example
         from pipeworkbench.gui.tour.guide import start_guide
 

@@ -34,7 +34,7 @@ class ImportStation(Command):
         if lacking:
             FreeCAD.Console.PrintWarning(tr("The photographs are not shown: {packages} is missing").format(packages=", ".join(lacking)) + "\n")
             return
-        from pipeworkbench.gui.photos.window import open_photo_window
+        from pipeworkbench.gui.photos.windows import open_photo_window
 
         open_photo_window(station)
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import Any
 
 import FreeCAD
-import FreeCADGui
 
 from pipeworkbench.commands.base import Command
 from pipeworkbench.commands.stations import chosen_station
@@ -15,7 +14,7 @@ from pipeworkbench.commands.stations import chosen_station
 class MeasuringCommand(Command):
     """Opens a measuring tool."""
 
-    needs = ("cv2",)
+    needs = ("cv2", "cadquery")
     needs_station = True
 
 
@@ -27,20 +26,16 @@ def station_to_measure() -> Any:
     InputError
         Where none of these says which.
     """
-    from pipeworkbench.gui.compat import QtWidgets
-    from pipeworkbench.gui.photos.window import photo_window
+    from pipeworkbench.gui.photos.windows import photo_window_in_front
 
     document = FreeCAD.ActiveDocument
-    window = photo_window()
-    area = FreeCADGui.getMainWindow().findChild(QtWidgets.QMdiArea)
-    if window is not None and area.activeSubWindow() is window.parent() and window.station_object.Document.Name == document.Name:
-        return window.station_object
-    return chosen_station(document)
+    window = photo_window_in_front(document)
+    return chosen_station(document) if window is None else window.station_object
 
 
 def selected_of_kind(*kinds: type[Any]) -> list[Any]:
     """Return the selected objects of the active document that are of one of some features' kinds."""
     from pipeworkbench.features.base import is_kind
+    from pipeworkbench.gui.selection import selected_objects
 
-    selected = FreeCADGui.Selection.getSelection(FreeCAD.ActiveDocument.Name)
-    return [obj for obj in selected if any(is_kind(obj, kind) for kind in kinds)]
+    return [obj for obj in selected_objects(FreeCAD.ActiveDocument) if any(is_kind(obj, kind) for kind in kinds)]

@@ -22,6 +22,6 @@ class PhotoWindowCommand(Command):
     def run(self) -> None:
         """Open the window."""
         from pipeworkbench.commands.stations import chosen_station
-        from pipeworkbench.gui.photos.window import open_photo_window
+        from pipeworkbench.gui.photos.windows import open_photo_window
 
         open_photo_window(chosen_station(FreeCAD.ActiveDocument))

@@ -51,9 +51,10 @@ def reconstruct_picks(obj: Any, path: Path) -> list[Any]:
     from pipeworkbench.features.document import add_pipeline, connections_in
     from pipeworkbench.features.preferences import adjustment_settings, assemble_settings, pick_settings
     from pipeworkbench.features.station import station_of
+    from pipeworkbench.gui.jobs import Progress
     from pipeworkbench.gui.translation import tr
     from pipeworkbench.gui.view_providers import show
-    from pipeworkbench.gui.worker import Progress, run_long
+    from pipeworkbench.gui.worker import run_long
     from pipeworkbench.recon.picks import read_picks
     from pipeworkbench.recon.reconstruct import Reconstruction, reconstruct
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import FreeCADGui
-
 from pipeworkbench.errors import InputError
 
 
@@ -19,9 +17,10 @@ def chosen_station(document: Any) -> Any:
         Where there is none, or several and none is selected.
     """
     from pipeworkbench.features.document import stations_in
+    from pipeworkbench.gui.selection import selected_objects
 
     stations = stations_in(document)
-    selection = FreeCADGui.Selection.getSelection(document.Name)
+    selection = selected_objects(document)
     selected = [obj for obj in stations if obj in selection]
     names = {getattr(obj, "StationName", "") for obj in selection}
     meant = selected or [obj for obj in stations if obj.StationName in names]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.document import components_in, connections_in, pipeline_of, replace_components, stations_in
+from pipeworkbench.features.preferences import adjustment_settings
 from pipeworkbench.features.station import station_of
 from pipeworkbench.features.transactions import transaction
 from pipeworkbench.pipeline import Component, Joint, Pipe, Pipeline
@@ -101,7 +102,6 @@ def compute(
     InputError
         Where an image cannot be read or the problem has no datum.
     """
-    from pipeworkbench.recon.adjust import AdjustmentSettings
     from pipeworkbench.recon.adjustment.changes import SUMMARY_KEY, changes, summary_of
     from pipeworkbench.recon.together import adjusted_together
     from pipeworkbench.recon.views import views_of
@@ -117,7 +117,7 @@ def compute(
     problem = replace(given, components=components, joints=_joints(task), stations=seen)
     free_stations = len(seen) > 1 and task.chosen >= {component.id for component in given.components}
     adjust = adjusted_together if free_stations else _adjusted_in_place
-    adjusted, solution = adjust(problem, views, settings or AdjustmentSettings(), progress)
+    adjusted, solution = adjust(problem, views, settings or adjustment_settings(), progress)
     result = replace(
         given,
         components=tuple(new if new.id in task.chosen else old for new, old in zip(adjusted.components, given.components, strict=True)),
@@ -149,6 +149,7 @@ def adjust_document(
     objects : iterable of document objects, optional
         Others stay where they are; so do components that are fixed.
     settings : AdjustmentSettings, optional
+        The user's where they are not given.
     progress : callable
         Called with what is being done, how many steps are done and how many there are.
 

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.base import is_kind, refuse_newer
@@ -153,14 +156,52 @@ def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline
     return Pipeline.from_dict(data | {"components": bare, "joints": joints}, source=document.Label)
 
 
-def pose_of(station_object: Any) -> Matrix:
-    """Return where a station object's level frame lies in the document's frame (4 x 4, mm): as merged, else where it was."""
-    name = station_object.StationName
-    poses = [data["stations"] for data in map(data_of, connections_in(station_object.Document).values()) if name in data["stations"]]
+@dataclass(frozen=True)
+class StationFrame:
+    """The frame in which a station's components lie in the document: its own level frame, or the one it was merged into.
+
+    Attributes
+    ----------
+    name : str
+        Of the station that the frame belongs to.
+    poses : dict of str to Matrix
+        The motions (4 x 4, mm) from the level frames of all stations that share it, by their names.
+    station : str
+        The station that was asked about.
+    """
+
+    name: str
+    poses: dict[str, Matrix]
+    station: str
+
+    @property
+    def frame_from_level(self) -> Matrix:
+        """The motion from the station's level frame."""
+        return self.poses[self.station]
+
+    @property
+    def level_from_frame(self) -> Matrix:
+        """The motion into the station's level frame."""
+        return _as_matrix(np.linalg.inv(np.array(self.frame_from_level, float)).tolist())
+
+    def holds(self, station: str | None) -> bool:
+        """Tell whether what a station measured lies in this frame; what nobody measured lies in any."""
+        return not station or station == self.name or station in self.poses
+
+
+def frame_of(station_object: Any) -> StationFrame:
+    """Return the frame of a station object's components: as merged, else its own."""
+    station = station_object.StationName
+    shared = [data for data in map(data_of, connections_in(station_object.Document).values()) if station in data.get("stations", {})]
+    if not shared:
+        return StationFrame(station, {station: Pipeline.of_station(station, ()).stations[station].frame_from_level}, station)
     # a merged frame has more stations than the station's own
-    rows = max(poses, key=len)[name]["frame_from_level"] if poses else Pipeline.of_station(name, ()).stations[name].frame_from_level
-    first, second, third, fourth = (tuple(row) for row in rows)
-    return first, second, third, fourth
+    data = max(shared, key=lambda data: len(data["stations"]))
+    return StationFrame(data["frame"], {name: _as_matrix(pose["frame_from_level"]) for name, pose in data["stations"].items()}, station)
+
+
+def _as_matrix(rows: Sequence[Sequence[float]]) -> Matrix:
+    return tuple((row[0], row[1], row[2], row[3]) for row in rows)
 
 
 def _bring_up_to_date(obj: Any, component: AnyComponent) -> None:
@@ -180,7 +221,7 @@ def _connect(document: Any, pipeline: Pipeline, objects: Iterable[Any]) -> None:
         set_connections(connections, pipeline, objects)
     for station in stations_in(document):
         if station.StationName in pipeline.stations:
-            set_pose(station, pose_of(station))
+            set_pose(station, frame_of(station).frame_from_level)
     project = project_of(document)
     if project is not None:
         if connections is not None:

@@ -20,6 +20,7 @@ from pipeworkbench.errors import InputError
 if TYPE_CHECKING:
     from pipeworkbench.recon.adjust import AdjustmentSettings
     from pipeworkbench.recon.assemble import AssembleSettings
+    from pipeworkbench.recon.detect import DetectSettings
     from pipeworkbench.recon.pick_settings import PickSettings
 
 PREFERENCES = "User parameter:BaseApp/Preferences/Mod/PipeWorkbench"
@@ -127,6 +128,7 @@ class Preferences:
         )
 
 
+FAR_PX = 6.0  # from this search distance on the starting values of an adjustment are rough ones
 RANGES = (
     ("nearest", "farthest", "the working range is empty"),
     ("smallest_diameter", "largest_diameter", "the range of diameters is empty"),
@@ -176,12 +178,35 @@ def pick_settings() -> PickSettings:
     )
 
 
-def adjustment_settings() -> AdjustmentSettings:
-    """Return the settings of the common adjustment."""
+def detect_settings() -> DetectSettings:
+    """Return the settings of finding pipes without a click, in the user's working range.
+
+    Of the user's diameters those are looked for that are not taken for pipes by mistake; all of them where there are none such.
+    """
+    from pipeworkbench.recon.detect import DetectSettings
+
+    picked, basis = pick_settings(), DetectSettings()
+    smallest, largest = (f(own, wished) for f, own, wished in zip((max, min), basis.diameter_range, picked.diameter_range, strict=True))
+    diameters = (smallest, largest) if smallest < largest else picked.diameter_range
+    return replace(basis, working_range=picked.working_range, diameter_range=diameters)
+
+
+def adjustment_settings(reach: float | None = None) -> AdjustmentSettings:
+    """Return the settings of the common adjustment.
+
+    Parameters
+    ----------
+    reach : float, optional
+        How far from the contours edges are looked for, px; where that is far, flanges may also lie elsewhere along their pipes.
+    """
     from pipeworkbench.recon.adjust import AdjustmentSettings
 
+    if reach is None:
+        basis = AdjustmentSettings()
+    else:
+        basis = AdjustmentSettings.for_rough_values(reach) if reach > FAR_PX else AdjustmentSettings(ranges=(reach, 2.0))
     chosen = preferences()
-    return AdjustmentSettings(sizes=chosen.sizes, aligned=chosen.aligned, snooping=chosen.outlier_limit)  # type: ignore[arg-type]  # checked
+    return replace(basis, sizes=chosen.sizes, aligned=chosen.aligned, snooping=chosen.outlier_limit)  # type: ignore[arg-type]  # checked
 
 
 def assemble_settings() -> AssembleSettings:

@@ -23,6 +23,9 @@ LEVELS = {
 }
 
 
+WARNING_TEXT, BAD_TEXT = "#c05000", "#c0392b"  # legible on light and dark themes
+
+
 class LegendEntry(NamedTuple):
     """A colour and what it says."""
 
@@ -76,3 +79,9 @@ def quality_colour(quality: float | None) -> Colour:
 def hex_of(colour: Colour) -> str:
     """Return a colour as Qt and HTML write it."""
     return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
+
+
+def rgb_of(text: str) -> Colour:
+    """Return the colour that Qt and HTML write as ``#rrggbb``."""
+    red, green, blue = (int(text[place : place + 2], 16) / 255 for place in (1, 3, 5))
+    return red, green, blue

@@ -11,7 +11,7 @@ import FreeCADGui
 from pipeworkbench.features.preferences import PREFERENCES
 from pipeworkbench.gui.compat import QtWidgets
 
-saved_files: list[Path] = []  # what was asked for with ask_save since FreeCAD began
+saved_files: list[Path] = []  # what was exported since FreeCAD began
 
 
 class Cancelled(Exception):  # noqa: N818  # not an error: the user's wish
@@ -34,8 +34,6 @@ def ask_save(title: str, file_filter: str, suggestion: str) -> Path | None:
     path = _remembered(name)
     if path is not None and not path.suffix:
         path = path.with_suffix(chosen.split("*")[-1].rstrip(")"))
-    if path is not None:
-        saved_files.append(path)
     return path
 
 

@@ -17,17 +17,18 @@ import FreeCADGui
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.transactions import transaction
 from pipeworkbench.files import package_folder
+from pipeworkbench.gui.colours import WARNING_TEXT
 from pipeworkbench.gui.compat import QtCore, QtGui, QtWidgets, is_alive
 from pipeworkbench.gui.dialogs import Cancelled
 from pipeworkbench.gui.failures import failures_told
+from pipeworkbench.gui.jobs import Progress
 from pipeworkbench.gui.translation import tr
-from pipeworkbench.gui.worker import Progress, run_long
+from pipeworkbench.gui.worker import run_long
 
 T = TypeVar("T")
 Buttons = QtWidgets.QDialogButtonBox.StandardButton
 ESCAPE = QtCore.Qt.Key.Key_Escape
 FRAME_PX, WIDEST_PX = 70, 480  # of the side panel: what FreeCAD puts around a panel; no more than that
-WARNING_COLOUR = "#c05000"  # legible on light and dark themes
 
 _current: Panel | None = None
 
@@ -190,7 +191,7 @@ class Panel:
         if not is_alive(self._message):
             return
         self._message.setText(text)
-        self._message.setStyleSheet(f"color: {WARNING_COLOUR}" if warning else "")
+        self._message.setStyleSheet(f"color: {WARNING_TEXT}" if warning else "")
         self._message.setVisible(bool(text))
 
     # FreeCAD's side

@@ -322,18 +322,14 @@ class ColourButton(QtWidgets.QPushButton):  # type: ignore[misc]  # Qt has no ty
         """Show a colour."""
         self._colour = colour
         pixmap = QtGui.QPixmap(48, 14)
-        pixmap.fill(_qcolor(colour))
+        pixmap.fill(QtGui.QColor.fromRgbF(*colour))
         self.setIcon(QtGui.QIcon(pixmap))
         self.setIconSize(pixmap.size())
 
     def _ask(self) -> None:
-        chosen = QtWidgets.QColorDialog.getColor(_qcolor(self._colour), self)
+        chosen = QtWidgets.QColorDialog.getColor(QtGui.QColor.fromRgbF(*self._colour), self)
         if chosen.isValid():
             self.set_colour((chosen.redF(), chosen.greenF(), chosen.blueF()))
-
-
-def _qcolor(colour: Colour) -> QtGui.QColor:
-    return QtGui.QColor(*(round(255 * part) for part in colour))
 
 
 def _try_tables(folders: Sequence[str]) -> None:

@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import FreeCAD
-
-from pipeworkbench.errors import PipeWorkbenchError
 from pipeworkbench.features.base import is_newer
 from pipeworkbench.features.station import embed_images, missing_images, release_images, relocate
+from pipeworkbench.features.transactions import transaction
 from pipeworkbench.gui.dialogs import ask_open, show_error
+from pipeworkbench.gui.failures import failures_told
 
 FILES = "Photographs and calibrations (*.jpg *.jpeg *.png *.tif *.tiff *.bmp *.pgm *.json);;All files (*)"
 
@@ -51,13 +50,5 @@ def _add(menu: Any, text: str, tooltip: str, act: Callable[[], object]) -> None:
 
 def _change(station: Any, name: str, act: Callable[[Any], object]) -> None:
     """Change a station as one step of undo; where it fails, say why."""
-    document = station.Document
-    document.openTransaction(name)
-    try:
+    with failures_told(name), transaction(station.Document, name):
         act(station)
-    except PipeWorkbenchError as error:
-        document.abortTransaction()
-        FreeCAD.Console.PrintError(f"{error}\n")
-        show_error(str(error))
-    else:
-        document.commitTransaction()

@@ -140,7 +140,7 @@ class StationView(ViewProvider):
         from pipeworkbench.gui.failures import failures_told
 
         with failures_told(view_object.Object.Label):
-            from pipeworkbench.gui.photos.window import open_photo_window
+            from pipeworkbench.gui.photos.windows import open_photo_window
 
             open_photo_window(view_object.Object)
         return True

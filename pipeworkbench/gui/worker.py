@@ -3,78 +3,25 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 import FreeCAD
 import FreeCADGui
 
 from pipeworkbench.errors import PipeWorkbenchError
 from pipeworkbench.gui.compat import QtCore, QtWidgets, execute, is_alive
-from pipeworkbench.gui.dialogs import Cancelled
+from pipeworkbench.gui.jobs import Job, Progress
 from pipeworkbench.gui.translation import tr
 
 T = TypeVar("T")
-Progress = Callable[[str, int, int], None]
 
 POLL_MS = 30
 PATIENCE_MS = 300  # work that is shorter shows no dialog
 LAST_WORDS_S = 5.0  # how long FreeCAD's end waits for the work to notice that it was cancelled
 
 _running: list[Job[Any]] = []
-
-
-class Job(Generic[T]):
-    """A function in a thread: its progress, its end and the wish to end it; knows no Qt, so nothing of Qt is touched in the thread."""
-
-    def __init__(self, function: Callable[[Progress], T]) -> None:
-        self._function = function
-        self._result: list[T] = []
-        self._error: BaseException | None = None
-        self._cancelled = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="PipeWorkbench", daemon=True)
-        self.state = ("", 0, 0)
-        self._thread.start()
-
-    @property
-    def finished(self) -> bool:
-        """Whether the function has returned or raised."""
-        return not self._thread.is_alive()
-
-    @property
-    def cancelled(self) -> bool:
-        """Whether the function was asked to end."""
-        return self._cancelled.is_set()
-
-    def cancel(self) -> None:
-        """Ask the function to end: its next call of progress raises Cancelled."""
-        self._cancelled.set()
-
-    def wait(self, seconds: float) -> None:
-        """Wait for the function's end, at most so long."""
-        self._thread.join(seconds)
-
-    def result(self) -> T:
-        """Return what the function returned; raise what it raised, and Cancelled where it was asked to end."""
-        # what was asked to end is not wanted any more, even where it came to its end
-        if self.cancelled:
-            raise Cancelled
-        if self._error is not None:
-            raise self._error
-        return self._result[0]
-
-    def _run(self) -> None:
-        try:
-            self._result.append(self._function(self._progress))
-        except BaseException as error:  # noqa: BLE001  # raised again in the caller
-            self._error = error
-
-    def _progress(self, text: str, done: int, total: int) -> None:
-        if self.cancelled:
-            raise Cancelled
-        self.state = (text, done, total)
 
 
 class ProgressDialog(QtWidgets.QDialog):  # type: ignore[misc]  # Qt has no types

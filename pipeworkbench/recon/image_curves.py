@@ -39,7 +39,7 @@ class EpipolarCurve:
     distance: Array
 
 
-def contours_in(station: Station, components: Sequence[AnyComponent]) -> list[dict[str, Polylines]]:
+def contours_in(station: Station, components: Sequence[AnyComponent], alternatives: Sequence[int] | None = None) -> list[dict[str, Polylines]]:
     """Return what a station's cameras see of components, for each component by the camera's name.
 
     Parameters
@@ -47,6 +47,8 @@ def contours_in(station: Station, components: Sequence[AnyComponent]) -> list[di
     station : Station
     components : sequence of components
         In the station's level frame; they hide each other.
+    alternatives : sequence of int, optional
+        Number of the alternative that each component belongs to: those of different ones do not hide each other.
 
     Returns
     -------
@@ -58,15 +60,17 @@ def contours_in(station: Station, components: Sequence[AnyComponent]) -> list[di
     InputError
         Where a component has no such geometry.
     """
-    return [{camera: curves.seen for camera, curves in by_camera.items()} for by_camera in component_curves(station, components)]
+    return [{camera: curves.seen for camera, curves in by_camera.items()} for by_camera in component_curves(station, components, alternatives)]
 
 
-def component_curves(station: Station, components: Sequence[AnyComponent]) -> list[dict[str, ComponentCurves]]:
+def component_curves(
+    station: Station, components: Sequence[AnyComponent], alternatives: Sequence[int] | None = None
+) -> list[dict[str, ComponentCurves]]:
     """Return what :func:`contours_in` does together with the hidden parts."""
     shapes = _with_ends(shapes_of(components), components)
     found: list[dict[str, ComponentCurves]] = [{} for _ in components]
     for camera in station.cameras:
-        contour = contour_of_shapes(camera, shapes, INTERVAL_PX, TOUCHING_MM)
+        contour = contour_of_shapes(camera, shapes, INTERVAL_PX, TOUCHING_MM, alternatives)
         seen, hidden = _runs(contour, contour.visible), _runs(contour, ~contour.visible)
         for owner, by_camera in enumerate(found):
             by_camera[camera.name] = ComponentCurves(seen.get(owner, []), hidden.get(owner, []))
@@ -107,6 +111,14 @@ def lines_in_photograph(lines: LineSegments, interior: Interior, samples: int = 
     straight = lines.ends[:, :1] * (1 - part) + lines.ends[:, 1:] * part
     origin = interior.pixels(np.zeros((1, 2)))
     return interior.pixels((straight.reshape(-1, 2) - origin) / interior.pixels_per_radian).reshape(straight.shape)
+
+
+def distance_to_polyline(point: Array, line: Array) -> float:
+    """Return the distance of a point (2,) from a polyline (n, 2)."""
+    start, way = line[:-1], np.diff(line, axis=0)
+    length = np.maximum(np.einsum("ni,ni->n", way, way), 1e-12)
+    part = np.clip(np.einsum("ni,ni->n", point - start, way) / length, 0.0, 1.0)
+    return float(np.linalg.norm(start + part[:, None] * way - point, axis=1).min())
 
 
 def _with_ends(shapes: Shapes, components: Sequence[AnyComponent]) -> Shapes:

@@ -705,7 +705,7 @@
         </message>
         <message>
             <source>Click on a flange of a pipe, then choose its type and pressure class from those that fit.</source>
-            <translation>Klicken Sie auf einen Flansch eines Rohrs und wählen Sie Typ und Druckstufe aus den passenden aus.</translation>
+            <translation type="vanished">Klicken Sie auf einen Flansch eines Rohrs und wählen Sie Typ und Druckstufe aus den passenden aus.</translation>
         </message>
         <message>
             <source>Click on a proposal to choose it; Enter accepts it, Esc leaves</source>
@@ -714,6 +714,10 @@
         <message>
             <source>Click on the other edge of the pipe, in the same photograph.</source>
             <translation>Klicken Sie im selben Foto auf die andere Kante des Rohrs.</translation>
+        </message>
+        <message>
+            <source>Click on the straight edge of a flange's rim, then choose its type and pressure class from those that fit; Enter accepts it.</source>
+            <translation>Klicken Sie auf die gerade Kante eines Flanschrands, dann wählen Sie Typ und Druckstufe unter den passenden; die Eingabetaste übernimmt ihn.</translation>
         </message>
         <message>
             <source>Click on the straight edge of a flange's rim. Its pipe must have been measured.</source>
@@ -872,8 +876,12 @@
             <translation>Bögen</translation>
         </message>
         <message>
+            <source>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs, Enter accepts it.</source>
+            <translation>Bögen ergeben sich aus den Achsen der Rohre; wählen Sie den Biegeradius, der zu den Fotos passt, die Eingabetaste übernimmt ihn.</translation>
+        </message>
+        <message>
             <source>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</source>
-            <translation>Bögen werden aus den Achsen der Rohre gefunden; wählen Sie den Biegeradius, der zu den Fotos passt.</translation>
+            <translation type="vanished">Bögen werden aus den Achsen der Rohre gefunden; wählen Sie den Biegeradius, der zu den Fotos passt.</translation>
         </message>
         <message>
             <source>Else all components are compared</source>
@@ -1172,12 +1180,20 @@
             <translation>Die Abweichungen messen; das Dokument bleibt, wie es ist</translation>
         </message>
         <message>
+            <source>Measure the next pipe</source>
+            <translation>Das nächste Rohr messen</translation>
+        </message>
+        <message>
             <source>Measure the pipe around the corner</source>
-            <translation>Das Rohr um die Ecke messen</translation>
+            <translation type="vanished">Das Rohr um die Ecke messen</translation>
         </message>
         <message>
             <source>Measure the pipe that goes on behind a bend of the first one.</source>
-            <translation>Messen Sie das Rohr, das hinter einem Bogen des ersten weitergeht.</translation>
+            <translation type="vanished">Messen Sie das Rohr, das hinter einem Bogen des ersten weitergeht.</translation>
+        </message>
+        <message>
+            <source>Measure the pipe that goes on behind a bend of the first one; the tool stays open for it.</source>
+            <translation>Messen Sie das Rohr, das hinter einem Bogen des ersten weitergeht; das Werkzeug bleibt dafür offen.</translation>
         </message>
         <message>
             <source>Measuring</source>
@@ -1585,7 +1601,11 @@
         </message>
         <message>
             <source>That is all. Import photographs of your own with Import Station.</source>
-            <translation>Das ist alles. Importieren Sie eigene Fotos mit „Standpunkt importieren“.</translation>
+            <translation type="vanished">Das ist alles. Importieren Sie eigene Fotos mit „Standpunkt importieren“.</translation>
+        </message>
+        <message>
+            <source>That is all. The document's other tab shows the pipeline in 3D; the keys V and F, one after the other, fit the view. Import photographs of your own with Import Station.</source>
+            <translation>Das ist alles. Der andere Reiter des Dokuments zeigt die Rohrleitung in 3D; die Tasten V und F nacheinander passen die Ansicht ein. Eigene Fotos kommen mit „Standpunkt importieren“ dazu.</translation>
         </message>
         <message>
             <source>That is beside the photograph: click inside it</source>
@@ -1593,7 +1613,11 @@
         </message>
         <message>
             <source>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous.</source>
-            <translation>Die Ausgleichung passt alle Bauteile zugleich an die Kanten aller Fotos an und macht die Rohrleitung durchgängig.</translation>
+            <translation type="vanished">Die Ausgleichung passt alle Bauteile zugleich an die Kanten aller Fotos an und macht die Rohrleitung durchgängig.</translation>
+        </message>
+        <message>
+            <source>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous. Press Adjust in the panel, look at what it would change, and take it with OK.</source>
+            <translation>Die Ausgleichung passt alle Bauteile zugleich an die Kanten in allen Fotos an und macht die Leitung durchgängig. Drücken Sie im Fenster „Ausgleichen“, sehen Sie an, was sich ändern würde, und übernehmen Sie es mit OK.</translation>
         </message>
         <message>
             <source>The components have changed: adjust them again.</source>

@@ -668,16 +668,16 @@
             <translation>Click inside a pipe, or on one of its edges.</translation>
         </message>
         <message>
-            <source>Click on a flange of a pipe, then choose its type and pressure class from those that fit.</source>
-            <translation>Click on a flange of a pipe, then choose its type and pressure class from those that fit.</translation>
-        </message>
-        <message>
             <source>Click on a proposal to choose it; Enter accepts it, Esc leaves</source>
             <translation>Click on a proposal to choose it; Enter accepts it, Esc leaves</translation>
         </message>
         <message>
             <source>Click on the other edge of the pipe, in the same photograph.</source>
             <translation>Click on the other edge of the pipe, in the same photograph.</translation>
+        </message>
+        <message>
+            <source>Click on the straight edge of a flange's rim, then choose its type and pressure class from those that fit; Enter accepts it.</source>
+            <translation>Click on the straight edge of a flange's rim, then choose its type and pressure class from those that fit; Enter accepts it.</translation>
         </message>
         <message>
             <source>Click on the straight edge of a flange's rim. Its pipe must have been measured.</source>
@@ -832,8 +832,8 @@
             <translation>Elbows</translation>
         </message>
         <message>
-            <source>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</source>
-            <translation>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs.</translation>
+            <source>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs, Enter accepts it.</source>
+            <translation>Elbows are found from the pipes' axes; choose the bend radius that fits the photographs, Enter accepts it.</translation>
         </message>
         <message>
             <source>Else all components are compared</source>
@@ -1128,12 +1128,12 @@
             <translation>Measure the deviations; the document stays as it is</translation>
         </message>
         <message>
-            <source>Measure the pipe around the corner</source>
-            <translation>Measure the pipe around the corner</translation>
+            <source>Measure the next pipe</source>
+            <translation>Measure the next pipe</translation>
         </message>
         <message>
-            <source>Measure the pipe that goes on behind a bend of the first one.</source>
-            <translation>Measure the pipe that goes on behind a bend of the first one.</translation>
+            <source>Measure the pipe that goes on behind a bend of the first one; the tool stays open for it.</source>
+            <translation>Measure the pipe that goes on behind a bend of the first one; the tool stays open for it.</translation>
         </message>
         <message>
             <source>Measuring</source>
@@ -1532,16 +1532,16 @@
             <translation>Tees, Reducers and Caps</translation>
         </message>
         <message>
-            <source>That is all. Import photographs of your own with Import Station.</source>
-            <translation>That is all. Import photographs of your own with Import Station.</translation>
+            <source>That is all. The document's other tab shows the pipeline in 3D; the keys V and F, one after the other, fit the view. Import photographs of your own with Import Station.</source>
+            <translation>That is all. The document's other tab shows the pipeline in 3D; the keys V and F, one after the other, fit the view. Import photographs of your own with Import Station.</translation>
         </message>
         <message>
             <source>That is beside the photograph: click inside it</source>
             <translation>That is beside the photograph: click inside it</translation>
         </message>
         <message>
-            <source>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous.</source>
-            <translation>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous.</translation>
+            <source>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous. Press Adjust in the panel, look at what it would change, and take it with OK.</source>
+            <translation>The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous. Press Adjust in the panel, look at what it would change, and take it with OK.</translation>
         </message>
         <message>
             <source>The components have changed: adjust them again.</source>

@@ -2,6 +2,7 @@
 """What the tests in FreeCAD's window share: waiting, clicking, answering dialogs, pictures of the screen."""
 
 import sys
+import time
 from pathlib import Path
 
 import FreeCAD
@@ -10,7 +11,31 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from window import pump, wait_until
+from window import DEADLINE_S, pump, wait_until
+
+from pipeworkbench.gui.compat import QtCore, QtWidgets
+
+UNANSWERED_S = DEADLINE_S + 5.0  # longer than any test waits for a dialog
+
+
+@pytest.fixture(autouse=True)
+def no_dialog_hangs():
+    """A message that nobody answers is closed after a while, and fails the test instead of stopping all of them."""
+    since, unanswered = {}, []
+
+    def look():
+        boxes = [box for box in QtWidgets.QApplication.topLevelWidgets() if isinstance(box, QtWidgets.QMessageBox) and box.isVisible()]
+        for box in boxes:
+            if time.monotonic() - since.setdefault(id(box), time.monotonic()) > UNANSWERED_S:
+                unanswered.append(box.text())
+                box.reject()
+
+    timer = QtCore.QTimer()
+    timer.timeout.connect(look)
+    timer.start(500)
+    yield
+    timer.stop()
+    assert not unanswered
 
 
 @pytest.fixture

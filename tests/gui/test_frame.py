@@ -599,7 +599,7 @@ def test_guide_checks_steps_off_by_the_document_and_opens_them_again_on_undo(exa
 
 
 def test_tour_opens_from_the_toolbar_with_guide_and_photographs(workbench):
-    from pipeworkbench.gui.photos.window import photo_window
+    from pipeworkbench.gui.photos.windows import photo_window
 
     press("Example project: dummy station")
     assert wait_until(lambda: photo_window() is not None)

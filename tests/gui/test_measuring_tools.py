@@ -8,14 +8,28 @@ import FreeCAD
 import FreeCADGui
 import numpy as np
 import pytest
-from window import LEFT, SAMPLE, QTest, import_sample, press, pump, screenshot, toolbars, wait_until
+from window import (
+    KEY,
+    LEFT,
+    NO_KEY,
+    PATIENCE_S,
+    PICKS,
+    SAMPLE,
+    QTest,
+    click_at,
+    click_pipe,
+    edge_points,
+    import_sample,
+    kinds_in,
+    press_button,
+    pump,
+    screenshot,
+    tool_of,
+    toolbars,
+    wait_until,
+)
 
 from pipeworkbench.gui.compat import QtCore, QtWidgets
-
-PICKS = json.loads((SAMPLE / "picks.json").read_text(encoding="utf-8"))["picks"]
-KEY = QtCore.Qt.Key
-NO_KEY = QtCore.Qt.KeyboardModifier.NoModifier
-PATIENCE_S = 60.0  # an answer takes two seconds where nothing else is computed
 
 
 @pytest.fixture
@@ -25,52 +39,12 @@ def station(document):
     return import_sample(document)
 
 
-def tool_of(command):
-    """Press a command's button and return its tool once its photographs can be measured in."""
-    from pipeworkbench.gui.panel import open_panel
-
-    press(command)
-    tool = open_panel()
-    assert tool is not None
-    assert wait_until(lambda: tool.window.views is not None, PATIENCE_S)
-    return tool
-
-
-def click_at(window, camera, point, scale=1.0):
-    """Click on a pixel of a photograph."""
+def share_in_sight(window, camera):
+    """Return which part of a proposal's outline a photograph shows of it."""
     canvas = window.canvas(camera)
-    window.show_place(camera, (float(point[0]), float(point[1])), scale)
-    pump(30)
-    place = canvas.screen_at((float(point[0]), float(point[1]))).toPoint()
-    QTest.mouseMove(canvas, place)
-    pump(30)
-    QTest.mouseClick(canvas, LEFT, NO_KEY, place)
-    pump(30)
-
-
-def edge_points(pick):
-    """Return a place on each of a pick's edges, and one in the middle between them."""
-    edges = np.mean(pick["edges"], axis=1)
-    return edges[0], edges[1], edges.mean(axis=0)
-
-
-def click_pipe(tool, pick):
-    """Click on both edges of a pipe and wait for the answer."""
-    one, other, _ = edge_points(pick)
-    click_at(tool.window, pick["camera"], one)
-    click_at(tool.window, pick["camera"], other)
-    assert wait_until(lambda: not tool.measurement.is_measuring, PATIENCE_S)
-
-
-def kinds_in(document):
-    from pipeworkbench.features.document import components_in
-
-    return sorted(obj.Proxy.kind.kind for obj in components_in(document))
-
-
-def press_button(tool, name):
-    QTest.mouseClick(tool.form.findChild(QtWidgets.QPushButton, name), LEFT)
-    pump(100)
+    points = np.concatenate([drawing.points for drawing in window.layer("proposal").drawings(camera)])
+    screen = canvas.frame.to_screen(points)
+    return float(((screen >= 0) & (screen <= (canvas.width(), canvas.height()))).all(axis=1).mean())
 
 
 def contents_of(document):
@@ -119,6 +93,24 @@ def test_two_edges_give_a_pipe_that_is_chosen_accepted_undone_and_done_again(sta
     pump(100)
     assert kinds_in(document) == ["pipe"]
     assert pipe.ComponentId in tool._accepted_label.text()
+    tool.close()
+
+
+def test_photographs_move_to_the_proposal_but_for_the_one_that_was_clicked_in(station):
+    tool = tool_of("Pipe")
+    window = tool.window
+    for camera in ("right", "top"):
+        window.show_place(camera, (0.0, 0.0), 1.0)
+    click_pipe(tool, PICKS[0])
+    clicked_at = tuple(map(float, edge_points(PICKS[0])[1]))
+    assert window.canvas("left").centre == pytest.approx(clicked_at, abs=0.5), "nothing moves under the pointer"
+    for camera in ("right", "top"):
+        assert share_in_sight(window, camera) > 0
+        assert window.canvas(camera).scale == 1.0
+    # what the user then moves away stays there until something else is shown
+    window.show_place("right", (0.0, 0.0))
+    tool._show()
+    assert window.canvas("right").centre == (0.0, 0.0)
     tool.close()
 
 
@@ -229,7 +221,7 @@ def test_deleting_the_station_or_closing_its_window_ends_a_tool_without_trace(st
 
 def test_a_click_in_another_station_begins_anew_there(station, tmp_path):
     from pipeworkbench.commands.import_station import import_station
-    from pipeworkbench.gui.photos.window import open_photo_window
+    from pipeworkbench.gui.photos.windows import open_photo_window
 
     other = tmp_path / "B"
     shutil.copytree(SAMPLE, other)
@@ -265,7 +257,7 @@ def test_pipes_are_found_ticked_by_confidence_rejected_and_accepted(station, mon
     from pipeworkbench.recon.picks import read_picks
     from pipeworkbench.recon.pipes import from_pick
 
-    def few(views, progress):
+    def few(views, *_settings, progress):
         progress("finding lines")
         picks = read_picks(SAMPLE / "picks.json", tool_station).pipes
         return tuple(from_pick(views, picks[index])[0] for index in (0, 3, 4))

@@ -14,7 +14,7 @@ from pipeworkbench.commands.import_station import import_station
 from pipeworkbench.features.document import components_in
 from pipeworkbench.gui.compat import QtCore, QtGui, QtWidgets, device_pixel_ratio, is_alive
 from pipeworkbench.gui.photos.contours import Colouring
-from pipeworkbench.gui.photos.window import open_photo_window, photo_window
+from pipeworkbench.gui.photos.windows import mdi_area, open_photo_window, photo_window
 
 Qt = QtCore.Qt
 RIGHT, MIDDLE = Qt.MouseButton.RightButton, Qt.MouseButton.MiddleButton
@@ -73,6 +73,14 @@ def measured(window):
     """A photo window with its edges."""
     assert wait_until(lambda: window.views is not None)
     return window
+
+
+def photograph_tabs():
+    """Return the titles of the photo windows in FreeCAD's window, and of tabs that are left of some."""
+    area = mdi_area()
+    tabs = [bar.tabText(number) for bar in area.findChildren(QtWidgets.QTabBar) for number in range(bar.count())]
+    windows = [sub_window.windowTitle() for sub_window in area.subWindowList()]
+    return sorted({title for title in (*tabs, *windows) if "photographs" in title})
 
 
 class Shown:
@@ -266,6 +274,26 @@ def test_linked_photographs_show_the_same_object(pipeline):
     at_four_metres = source.projection_centre + ray * (4000 - source.projection_centre[1]) / ray[1]
     assert right.centre == pytest.approx(target.project(at_four_metres[None])[0], abs=15)
     assert right.scale == left.scale == 1.0
+
+
+def test_lines_out_of_sight_are_brought_into_it_at_the_same_scale(window):
+    window.show_place("left", (100.0, 100.0), 4.0)
+    before = {canvas.camera: canvas.centre for canvas in window.canvases}
+    line = np.array([[500.0, 400.0], [560.0, 420.0]])
+    window.reveal({canvas.camera: [line] for canvas in window.canvases}, still="left")
+    assert window.canvas("left").centre == before["left"]
+    for camera in ("right", "top"):
+        canvas = window.canvas(camera)
+        assert canvas.centre == pytest.approx((530.0, 410.0))
+        assert canvas.rect().contains(place(canvas, (530.0, 410.0)))
+    assert {canvas.scale for canvas in window.canvases} == {4.0}
+    # what is in sight stays where it is
+    window.reveal({"right": [line + 3.0]})
+    assert window.canvas("right").centre == pytest.approx((530.0, 410.0))
+    # and so does a photograph of which no part shows more of something large
+    large = np.column_stack([np.linspace(0, 647, 50), np.full(50, 410.0)])
+    window.reveal({"right": [large]})
+    assert window.canvas("right").centre == pytest.approx((530.0, 410.0))
 
 
 def test_contrast_and_gamma_change_what_is_shown(window):
@@ -552,6 +580,15 @@ def test_window_closes_with_its_document(small):
     made = FreeCAD.newDocument("closing")
     window = open_photo_window(import_station(small / "station.json", made))
     FreeCAD.closeDocument(made.Name)
+    assert wait_until(lambda: not is_alive(window))
+    assert photograph_tabs() == []
+
+
+def test_tab_goes_with_the_photographs_whoever_closes_them(window):
+    assert len(photograph_tabs()) == 1
+    window.close()
+    assert photo_window() is None
+    assert wait_until(lambda: photograph_tabs() == [])
     assert wait_until(lambda: not is_alive(window))
 
 

@@ -9,11 +9,12 @@ from dataclasses import replace
 import FreeCAD
 import FreeCADGui
 import pytest
-from window import LEFT, SAMPLE, QTest, choose_file, press, pump, screenshot, wait_until, when_dialog_opens
+from window import LEFT, SAMPLE, QTest, choose_file, press, pump, screenshot, standard_button, wait_until, when_dialog_opens
 
 from pipeworkbench.features.component import component_of
 from pipeworkbench.features.document import add_pipeline, add_station, components_in, pipeline_of
 from pipeworkbench.gui.compat import QtCore, QtWidgets, is_alive
+from pipeworkbench.gui.dialogs import saved_files
 from pipeworkbench.gui.panel import Panel, open_panel
 from pipeworkbench.pipeline import Pipe, Pipeline, moved
 from pipeworkbench.recon.picks import read_picks
@@ -78,15 +79,21 @@ def click(name):
     QTest.mouseClick(widget, LEFT)
 
 
-def standard_button(button):
-    boxes = [box for box in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialogButtonBox) if box.isVisible() and box.button(button) is not None]
-    return boxes[-1].button(button)
-
-
 def overlays():
     """Return what panels have put into the 3D view."""
     graph = FreeCADGui.ActiveDocument.mdiViewsOfType("Gui::View3DInventor")[0].getSceneGraph()
     return [node for node in (graph.getChild(row) for row in range(graph.getNumChildren())) if node.getName() == "PipeWorkbenchOverlay"]
+
+
+def assert_numbers_are_whole(table, width=350):
+    """Check that all columns of a table are in sight in a narrow side panel, and that none but names are cut."""
+    table.setFixedWidth(width)
+    pump(50)
+    assert table.horizontalHeader().length() <= table.viewport().width()
+    for column in range(table.columnCount()):
+        if table.item(0, column).textAlignment() & QtCore.Qt.AlignmentFlag.AlignRight:
+            assert table.columnWidth(column) >= table.sizeHintForColumn(column)
+        assert table.item(0, column).toolTip() or not table.item(0, column).text()
 
 
 class Plain(Panel):
@@ -219,6 +226,7 @@ def test_adjusting_shows_before_and_after_and_is_one_step(measured):
     assert [row[0] for row in panel.images.texts()] == ["A / left", "A / right", "A / top"]
     assert all(float(row[1]) < 1 for row in panel.images.texts())
     assert "σ₀" in panel.summary.text()
+    assert_numbers_are_whole(panel.components)
     child(QtWidgets.QCheckBox, "residuals").click()
     pump(200)
     screenshot("adjust_residuals")
@@ -387,6 +395,7 @@ def test_exporting_writes_what_is_selected_in_the_chosen_format(document, workbe
     assert wait_until(lambda: not panel.is_open)
     with (tmp_path / "pipes.csv").open(encoding="utf-8", newline="") as file:
         assert [row["id"] for row in csv.DictReader(file)] == ["A-P1"]
+    assert saved_files[-1] == tmp_path / "pipes.csv", "the guide checks its last step off by it"
 
 
 def test_a_report_is_written_and_opened(measured, tmp_path, monkeypatch):

@@ -1,22 +1,28 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Helpers of the tests in FreeCAD's window: waiting with a deadline, toolbar buttons, dialogs, pictures of the screen."""
 
+import json
 import os
 import time
 from pathlib import Path
 
 import FreeCAD
 import FreeCADGui
+import numpy as np
 
 import pipeworkbench
-from pipeworkbench.gui.compat import QtCore, QtWidgets, qt_module
+from pipeworkbench.gui.compat import QtCore, QtWidgets, is_alive, qt_module
 
 QTest = qt_module("QtTest").QTest
 LEFT = QtCore.Qt.MouseButton.LeftButton
 ROOT = Path(pipeworkbench.__file__).resolve().parent.parent
 SAMPLE = ROOT / "resources" / "samples" / "dummy" / "A"
+PICKS = json.loads((SAMPLE / "picks.json").read_text(encoding="utf-8"))["picks"]
+KEY = QtCore.Qt.Key
+NO_KEY = QtCore.Qt.KeyboardModifier.NoModifier
 SCREENSHOTS = os.environ.get("PIPEWORKBENCH_SCREENSHOTS")
 DEADLINE_S = 20.0
+PATIENCE_S = 60.0  # an answer takes two seconds where nothing else is computed
 
 
 def pump(milliseconds=100):
@@ -47,7 +53,7 @@ def screenshot(name):
     if SCREENSHOTS:
         pump(300)
         for dock in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDockWidget):
-            if dock.objectName() in ("Tree view", "Property view", "Selection view", "Python console", "DAG View"):
+            if dock.objectName() in ("Tree view", "Property view", "Selection view", "Python console", "DAG View", "Report view"):
                 dock.setVisible(False)
         pump(500)
         # the screen, not the window: a grab of the window leaves the 3D view out
@@ -126,3 +132,59 @@ def import_sample(document):
 
     FreeCAD.setActiveDocument(document.Name)
     return import_station(SAMPLE / "station.json", document)
+
+
+def tool_of(command):
+    """Press a command's button and return its tool once its photographs can be measured in."""
+    from pipeworkbench.gui.panel import open_panel
+
+    press(command)
+    tool = open_panel()
+    assert tool is not None
+    assert wait_until(lambda: tool.window.views is not None, PATIENCE_S)
+    return tool
+
+
+def click_at(window, camera, point, scale=1.0):
+    """Click on a pixel of a photograph."""
+    canvas = window.canvas(camera)
+    window.show_place(camera, (float(point[0]), float(point[1])), scale)
+    pump(30)
+    place = canvas.screen_at((float(point[0]), float(point[1]))).toPoint()
+    QTest.mouseMove(canvas, place)
+    pump(30)
+    QTest.mouseClick(canvas, LEFT, NO_KEY, place)
+    pump(30)
+
+
+def edge_points(pick):
+    """Return a place on each of a pick's edges, and one in the middle between them."""
+    edges = np.mean(pick["edges"], axis=1)
+    return edges[0], edges[1], edges.mean(axis=0)
+
+
+def click_pipe(tool, pick):
+    """Click on both edges of a pipe and wait for the answer."""
+    one, other, _ = edge_points(pick)
+    click_at(tool.window, pick["camera"], one)
+    click_at(tool.window, pick["camera"], other)
+    assert wait_until(lambda: not tool.measurement.is_measuring, PATIENCE_S)
+
+
+def kinds_in(document):
+    """Return the kinds of a document's components, sorted."""
+    from pipeworkbench.features.document import components_in
+
+    return sorted(obj.Proxy.kind.kind for obj in components_in(document))
+
+
+def press_button(tool, name):
+    """Click a button of a panel by its object's name."""
+    QTest.mouseClick(tool.form.findChild(QtWidgets.QPushButton, name), LEFT)
+    pump(100)
+
+
+def standard_button(button):
+    """Return the visible OK, Apply, Cancel ... of FreeCAD's task panel."""
+    boxes = [box for box in FreeCADGui.getMainWindow().findChildren(QtWidgets.QDialogButtonBox) if is_alive(box) and box.isVisible()]
+    return next(found for found in (box.button(button) for box in reversed(boxes)) if found is not None)

@@ -3,29 +3,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-import FreeCADGui
 import numpy as np
 
 from pipeworkbench.errors import PipeWorkbenchError
 from pipeworkbench.features.component import component_of
-from pipeworkbench.features.connections import data_of
-from pipeworkbench.features.document import connections_in
+from pipeworkbench.features.document import StationFrame, frame_of
 from pipeworkbench.features.kinds import is_component
 from pipeworkbench.gui.colours import hex_of, quality_colour
 from pipeworkbench.gui.compat import QtCore
 from pipeworkbench.gui.photos.background import Background
 from pipeworkbench.gui.photos.drawing import Drawing, Polylines
 from pipeworkbench.gui.photos.layers import Layer
-from pipeworkbench.gui.photos.observers import Coalesced, SelectionObserver
+from pipeworkbench.gui.photos.observers import Coalesced
+from pipeworkbench.gui.selection import SelectionObserver, selected_objects
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee, moved
 from pipeworkbench.recon.camera import Array
-from pipeworkbench.recon.image_curves import ComponentCurves, component_curves
+from pipeworkbench.recon.image_curves import ComponentCurves, component_curves, distance_to_polyline
 from pipeworkbench.recon.station import Station
 
 # told apart on grey photographs, by colour-blind people too (Okabe and Ito)
@@ -134,11 +132,11 @@ class ComponentContours:
             self._outdated = True
             return
         self._outdated = False
-        stations, frame_from_level = _frame_of(self._station_object)
-        objects = self._visible_objects(stations)
-        components = [self._known[obj.Name] for obj in objects]
+        frame = frame_of(self._station_object)
+        level_from_frame = frame.level_from_frame
+        objects = self._visible_objects(frame)
         named = [(obj.Name, obj.Label) for obj in objects]
-        placed = _in_level(frame_from_level, components)
+        placed = [moved(component, level_from_frame) for obj in objects if (component := self._known[obj.Name]) is not None]
 
         def show(curves: list[dict[str, ComponentCurves]]) -> None:
             self._running = None
@@ -152,8 +150,8 @@ class ComponentContours:
 
         self._running = self._background.submit(lambda: component_curves(self._station, placed), show, give_up)
 
-    def _visible_objects(self, stations: frozenset[str]) -> list[Any]:
-        """Return the objects to be shown, those that some stations measured; what they are is asked only of those that have changed."""
+    def _visible_objects(self, frame: StationFrame) -> list[Any]:
+        """Return the objects of a frame that are to be shown; what they are is asked only of those that have changed."""
         document = self._station_object.Document
         found = []
         for obj in document.Objects:
@@ -161,13 +159,13 @@ class ComponentContours:
                 continue
             if obj.Name not in self._known:
                 self._known[obj.Name] = _component_or_none(obj)
-            if self._known[obj.Name] is not None and obj.StationName in {"", *stations}:
+            if self._known[obj.Name] is not None and frame.holds(obj.StationName):
                 found.append(obj)
         return found
 
     def draw(self) -> None:
         """Draw the contours, those of selected components above the others."""
-        selected = {obj.Name for obj in FreeCADGui.Selection.getSelection(self._station_object.Document.Name)}
+        selected = {obj.Name for obj in selected_objects(self._station_object.Document)}
         for camera in (camera.name for camera in self._station.cameras):
             drawings: list[Drawing] = []
             by_colour: dict[str, tuple[list[Array], list[Array]]] = {}
@@ -198,34 +196,9 @@ class ComponentContours:
         return hex_of(quality_colour(shown.component.quality))
 
 
-def distance_to_polyline(point: Array, line: Array) -> float:
-    """Return the distance of a point (2,) from a polyline (n, 2)."""
-    start, way = line[:-1], np.diff(line, axis=0)
-    length = np.maximum(np.einsum("ni,ni->n", way, way), 1e-12)
-    part = np.clip(np.einsum("ni,ni->n", point - start, way) / length, 0.0, 1.0)
-    return float(np.linalg.norm(start + part[:, None] * way - point, axis=1).min())
-
-
 def _component_or_none(obj: Any) -> AnyComponent | None:
     """Return the component of an object, None while its dimensions do not belong together: FreeCAD marks it."""
     try:
         return component_of(obj)
     except PipeWorkbenchError:
         return None
-
-
-def _frame_of(station_object: Any) -> tuple[frozenset[str], Array]:
-    """Return the stations that a station is merged with, itself among them, and the motion (4, 4) from its level frame to their common one."""
-    own = station_object.StationName
-    frames = [data_of(connections).get("stations", {}) for connections in connections_in(station_object.Document).values()]
-    stations = max((frame for frame in frames if own in frame), key=len, default=None)
-    if stations is None:
-        return frozenset((own,)), np.eye(4)
-    return frozenset(stations), np.array(stations[own]["frame_from_level"], float)
-
-
-def _in_level(frame_from_level: Array, components: Sequence[AnyComponent | None]) -> list[AnyComponent]:
-    """Return components of the document's frame in the station's level frame."""
-    rows: list[list[float]] = np.linalg.inv(frame_from_level).tolist()
-    level_from_frame = tuple((row[0], row[1], row[2], row[3]) for row in rows)
-    return [moved(component, level_from_frame) for component in components if component is not None]

@@ -5,12 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from pipeworkbench.gui.compat import QtCore, device_pixel_ratio
 from pipeworkbench.gui.photos.canvas import PhotoCanvas
+from pipeworkbench.recon.camera import Array
 
 LARGEST_SCALE = 64.0
 SMALLEST_FIT = 0.5  # of the scale at which everything fits
 FIT_MARGIN = 0.98
+ENOUGH_SHOWN = 0.5  # of what could be shown of something
 
 # the pixel of one camera's photograph -> the same object point's pixel in another's, None where it is not seen there
 Transfer = Callable[[str, tuple[float, float], str], "tuple[float, float] | None"]
@@ -74,6 +78,17 @@ class Navigation:
         self._fits = False
         self._look(leader, point, scale or leader.scale)
 
+    def reveal(self, canvas: PhotoCanvas, points: Array) -> None:
+        """Show points (n, 2) of one photograph in it, where much more of them could be seen than is seen; the other photographs stay."""
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        if _share_shown(canvas, points, middle) == 0:  # a bend, close up: its lines pass far from the middle
+            middle = points[np.linalg.norm(points - middle, axis=1).argmin()]
+        centre = (float(middle[0]), float(middle[1]))
+        if _share_shown(canvas, points, canvas.centre) < ENOUGH_SHOWN * _share_shown(canvas, points, centre):
+            self._fits = False
+            canvas.look_at(centre, canvas.scale)
+            self._moved()
+
     def _look(self, leader: PhotoCanvas, centre: tuple[float, float], scale: float) -> None:
         width, height = leader.size_of_photograph
         centre = (min(max(centre[0], 0.0), width - 1.0), min(max(centre[1], 0.0), height - 1.0))
@@ -91,3 +106,9 @@ class Navigation:
     def _resized(self) -> None:
         if self._fits:
             self.fit()
+
+
+def _share_shown(canvas: PhotoCanvas, points: Array, centre: Array | Sequence[float]) -> float:
+    """Return which part of points (n, 2) of a photograph a canvas shows that has a pixel in its middle."""
+    half = np.array([canvas.width(), canvas.height()]) / (2 * canvas.scale)
+    return float((np.abs(points - np.asarray(centre)) <= half).all(axis=1).mean())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a photo window hears of FreeCAD: changes of its document, and of the selection."""
+"""What a photo window hears of FreeCAD: changes of its document, many of them at once as one."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 import FreeCAD
-import FreeCADGui
 
 from pipeworkbench.gui.compat import QtCore
 
@@ -59,32 +58,6 @@ class DocumentObserver:
         """Tell that the document goes."""
         if document.Name == self._document:
             self._listener.document_closed()
-
-
-class SelectionObserver:
-    """Follows FreeCAD's selection in one document."""
-
-    def __init__(self, document: Any, changed: Callable[[], None]) -> None:
-        self._document = document.Name
-        self._changed = changed
-        FreeCADGui.Selection.addObserver(self)
-
-    def stop(self) -> None:
-        """Hear nothing any more."""
-        FreeCADGui.Selection.removeObserver(self)
-
-    def addSelection(self, document: str, *_: Any) -> None:  # FreeCAD's name
-        """Something was selected."""
-        if document == self._document:
-            self._changed()
-
-    removeSelection = addSelection  # noqa: N815  # FreeCAD's name
-
-    def setSelection(self, document: str, *_: Any) -> None:  # noqa: ARG002  # FreeCAD's name
-        """Tell that the selection is another one."""
-        self._changed()
-
-    clearSelection = setSelection  # noqa: N815  # FreeCAD's name
 
 
 class Coalesced:

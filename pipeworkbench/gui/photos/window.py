@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,58 +13,32 @@ import FreeCADGui
 import numpy as np
 
 from pipeworkbench.errors import InputError, PipeWorkbenchError
-from pipeworkbench.features.preferences import pick_settings, preferences
+from pipeworkbench.features.preferences import pick_settings
 from pipeworkbench.features.station import missing_images, relocate, station_of
 from pipeworkbench.files import package_folder
 from pipeworkbench.gui.compat import QtCore, QtGui, QtWidgets, Signal, is_alive
 from pipeworkbench.gui.photos.background import Background
-from pipeworkbench.gui.photos.canvas import SNAP, PhotoCanvas
+from pipeworkbench.gui.photos.canvas import PhotoCanvas
 from pipeworkbench.gui.photos.contours import Colouring, ComponentContours
-from pipeworkbench.gui.photos.drawing import Band, Points, Polylines
+from pipeworkbench.gui.photos.keys import meaning_of
 from pipeworkbench.gui.photos.layers import Layer
 from pipeworkbench.gui.photos.missing_page import MissingPage, ask_folder
 from pipeworkbench.gui.photos.navigation import Navigation
 from pipeworkbench.gui.photos.observers import DocumentObserver
 from pipeworkbench.gui.photos.photographs import Photographs
 from pipeworkbench.gui.photos.picture import Picture, Tone
+from pipeworkbench.gui.photos.pointing import Pixel, Pointing
 from pipeworkbench.gui.photos.status import StatusLine
 from pipeworkbench.gui.photos.toolbar import VECTOR_START, PhotoToolbar
 from pipeworkbench.gui.translation import tr
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.edges import EdgeMap
-from pipeworkbench.recon.image_curves import epipolar_curve
-from pipeworkbench.recon.snapping import SnappedEdge, nearest_edge
 from pipeworkbench.recon.station import Station
 from pipeworkbench.recon.views import View
 
-LEAST_SNAP_PX = 3.0  # of the photograph
-HIT_SCREEN_PX = 6.0
-EDGE_COLOUR, LINE_COLOUR, EPIPOLAR_COLOUR = "#ffb347", "#ff6ad5", "#4dd0e1"
-BAND_COLOUR, SNAP_GLOW = "#404dd0e1", "#60ffe14d"
-GLOW_WIDTH, SNAP_WIDTH = 7.0, 2.0
-DISTANCES_M = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 30, 50)  # marked along the search band
+EDGE_COLOUR, LINE_COLOUR = "#ffb347", "#ff6ad5"
 
 Qt = QtCore.Qt
-Pixel = tuple[float, float]
-
-
-@dataclass(frozen=True, eq=False)
-class Pointed:
-    """What the pointer is at: a pixel of a camera's photograph, None where it has left it, and the edge there, with a tool that snaps."""
-
-    camera: str
-    point: Pixel | None
-    edge: SnappedEdge | None
-
-
-@dataclass(frozen=True, eq=False)
-class Click:
-    """A click of the left button on a pixel of a camera's photograph, with the edge there, with a tool that snaps."""
-
-    camera: str
-    point: Pixel
-    edge: SnappedEdge | None
-    modifiers: Any
 
 
 class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
@@ -95,9 +69,11 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         self.contours: ComponentContours | None = None
         self.is_closed = False
         self.is_missing = True
-        self._object_name, self._document_name = station_object.Name, station_object.Document.Name
+        self.document_name: str = station_object.Document.Name
+        self._object_name: str = station_object.Name
         self._layers: dict[str, Layer] = {}
-        self._tool, self._snapping = False, False
+        self._tool = False
+        self._pointing = Pointing(self)
         self._leader = 0
         self._splitter: QtWidgets.QSplitter | None = None
         self._background = Background(self)
@@ -126,13 +102,18 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
 
     def set_tool(self, active: bool, *, snapping: bool = False, hint: str = "") -> None:  # noqa: FBT001  # the interface
         """Tell that a tool is active: clicks are its own and select nothing; with ``snapping`` they take the edge under the pointer."""
-        self._tool, self._snapping = active, active and snapping
+        self._tool, self._pointing.snaps = active, active and snapping
         self.status.set_hint(hint)
         self.layer("snap").clear()
         if self.contours is not None:
             self.contours.hover(None)
         if self.canvases:
-            self._hover_again()
+            self._pointing.again()
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """The names of the document and of the station."""
+        return self.document_name, self._object_name
 
     @property
     def has_tool(self) -> bool:
@@ -178,6 +159,17 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         if self._navigation is not None:
             self._navigation.show(self.canvas(camera), point, scale)
 
+    def reveal(self, lines: Mapping[str, Sequence[Array]], still: str | None = None) -> None:
+        """Move photographs in which lines, by camera and in pixels, are hardly to be seen, so that they are; all keep their scale.
+
+        The photograph of the camera ``still`` stays where it is.
+        """
+        if self._navigation is not None:
+            for canvas in self.canvases:
+                shown = [line for line in lines.get(canvas.camera, ()) if len(line)]
+                if shown and canvas.camera != still:
+                    self._navigation.reveal(canvas, np.concatenate(shown))
+
     # the toolbar's actions
 
     def fit(self) -> None:
@@ -212,7 +204,7 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         if shown and not self.is_closed:
             self._fill_layers()
         if name == "epipolar" and self.canvases:
-            self._hover_again()
+            self._pointing.again()
 
     def set_vector_scale(self, scale: float) -> None:
         """Draw residuals longer or shorter."""
@@ -239,29 +231,26 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
     def object_deleted(self, name: str) -> None:
         """Close with the station (called by the document's observer)."""
         if name == self._object_name:
-            # not now: Qt and FreeCAD may be in the middle of something with both
             self._end()
-            QtCore.QTimer.singleShot(0, self._close_sub_window)
         elif self.contours is not None:
             self.contours.object_changed(name)
 
     def document_closed(self) -> None:
         """Close with the document (called by its observer)."""
         self._end()
-        QtCore.QTimer.singleShot(0, self._close_sub_window)
 
     # Qt's events
 
     def event(self, event: Any) -> bool:  # Qt's name
         """Keep FreeCAD's shortcuts (digits turn the 3D view) from taking the window's own keys."""
-        if event.type() == QtCore.QEvent.Type.ShortcutOverride and self._meaning_of(event) is not None:
+        if event.type() == QtCore.QEvent.Type.ShortcutOverride and meaning_of(event, self) is not None:
             event.accept()
             return True
         return bool(super().event(event))
 
     def keyPressEvent(self, event: Any) -> None:  # Qt's name
         """Do what a key means here."""
-        meaning = self._meaning_of(event)
+        meaning = meaning_of(event, self)
         if meaning is None:
             super().keyPressEvent(event)
         else:
@@ -270,7 +259,7 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
     def keyReleaseEvent(self, event: Any) -> None:  # Qt's name
         """End panning with the space bar."""
         if event.key() == Qt.Key.Key_Space and not event.isAutoRepeat():
-            self._pan_with_left(pans=False)
+            self.pan_with_left(pans=False)
         else:
             super().keyReleaseEvent(event)
 
@@ -308,10 +297,10 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         for index, camera in enumerate(self.station.cameras):
             canvas = PhotoCanvas(camera.name, (camera.interior.width, camera.interior.height), self._all_layers)
             canvas.loupe = self.toolbar.loupe.isChecked()
-            canvas.hovered.connect(lambda point, canvas=canvas: self._hovered(canvas, point))
-            canvas.clicked.connect(lambda point, modifiers, canvas=canvas: self._clicked(canvas, point, modifiers))
+            canvas.hovered.connect(partial(self._pointing.hovered, canvas))
+            canvas.clicked.connect(partial(self._pointing.clicked, canvas))
             canvas.missed.connect(self._missed)
-            canvas.activated.connect(lambda index=index: self._set_leader(index))
+            canvas.activated.connect(partial(self._set_leader, index))
             self.canvases.append(canvas)
             self._splitter.addWidget(canvas)
         self._navigation = Navigation(self.canvases, self._same_place, self._show_scale)
@@ -386,105 +375,26 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
     def _show_lines(self, index: int, lines: Array) -> None:
         self.layer("lines").set_polylines(self.canvases[index].camera, list(lines), LINE_COLOUR, width=1.2)
 
-    # the pointer
+    # the pointer and keys
 
-    def _hovered(self, canvas: PhotoCanvas, point: Pixel | None) -> None:
-        if self.is_closed:
-            return
-        edge = self._edge_at(canvas, point)
-        self._show_snap(canvas.camera, edge)
-        if self.contours is not None and not self._tool:
-            name = self._component_at(canvas, point)
-            self.contours.hover(name)
-            self.status.set_hint("" if name is None else self.contours.label_of(name))
-        self._show_search_band(canvas.camera, point if edge is None else (float(edge.point[0]), float(edge.point[1])))
-        self._show_place(canvas, point)
-        self.pointed.emit(Pointed(canvas.camera, point, edge))
+    def step_back(self) -> None:
+        """Take Esc: a step of a tool's back, or nothing selected any more."""
+        if not self._tool:
+            FreeCADGui.Selection.clearSelection(self.document_name)
+        self.stepped_back.emit()
 
-    def _hover_again(self) -> None:
-        """Do what a movement of the pointer would do, after something else has changed."""
-        canvas = next((canvas for canvas in self.canvases if canvas.pointer is not None), None)
-        if canvas is None or canvas.pointer is None:
-            self._show_search_band(self.canvases[0].camera, None)
-            return
-        point = canvas.photograph_at(canvas.pointer)
-        self._hovered(canvas, point if canvas.contains(point) else None)
-
-    def _clicked(self, canvas: PhotoCanvas, point: Pixel, modifiers: Any) -> None:
-        if self.is_closed:
-            return
-        if self._tool:
-            self.clicked.emit(Click(canvas.camera, point, self._edge_at(canvas, point), modifiers))
-            return
-        adds = bool(modifiers & Qt.KeyboardModifier.ControlModifier)
-        name = self._component_at(canvas, point)
-        self.clicked.emit(Click(canvas.camera, point, None, modifiers))
-        if not adds:
-            FreeCADGui.Selection.clearSelection(self._document_name)
-        if name is not None:
-            FreeCADGui.Selection.addSelection(self._document_name, name)
-            self.component_clicked.emit(name, adds)
+    def pan_with_left(self, *, pans: bool) -> None:
+        """Let the left button pan, while the space bar is held."""
+        for canvas in self.canvases:
+            canvas.set_pans_with_left(pans)
 
     def _missed(self) -> None:
         self.status.notice(tr("That is beside the photograph: click inside it"))
 
-    def _edge_at(self, canvas: PhotoCanvas, point: Pixel | None) -> SnappedEdge | None:
-        edges = self.edges(canvas.camera) if self._snapping and point is not None else None
-        if edges is None or point is None:
-            return None
-        return nearest_edge(edges, point, max(preferences().snap_radius_px / canvas.scale, LEAST_SNAP_PX))
-
-    def _component_at(self, canvas: PhotoCanvas, point: Pixel | None) -> str | None:
-        if point is None or self.contours is None or not self.layer("contours").visible:
-            return None
-        return self.contours.nearest(canvas.camera, point, HIT_SCREEN_PX / canvas.scale)
-
-    def _show_snap(self, camera: str, edge: SnappedEdge | None) -> None:
-        layer = self.layer("snap")
-        layer.clear()
-        if edge is not None:
-            thread = [edge.polyline]
-            glow = Polylines(thread, SNAP_GLOW, GLOW_WIDTH, casing=False)
-            layer.set_drawings(camera, [glow, Polylines(thread, SNAP, SNAP_WIDTH, casing=False), Points(edge.point, SNAP)])
-
-    def _show_search_band(self, camera: str, point: Pixel | None) -> None:
-        layer = self.layer("epipolar")
-        layer.clear()
-        if point is None or not layer.visible:
-            return
-        settings = pick_settings()
-        source = self.station.cameras[self._index_of(camera)]
-        for other in self.station.cameras:
-            if other is source:
-                continue
-            curve = epipolar_curve(source, point, other, settings.working_range)
-            if len(curve.position) < 2:
-                continue
-            metres = curve.distance / 1000
-            marks = [metre for metre in DISTANCES_M if metres.min() < metre < metres.max()]
-            places = np.column_stack([np.interp(marks, metres, curve.position[:, axis]) for axis in (0, 1)])
-            line = [curve.position]
-            layer.set_drawings(
-                other.name,
-                [
-                    Band(line, BAND_COLOUR, settings.search_range),
-                    Polylines(line, EPIPOLAR_COLOUR, 1.0),
-                    Points(places, EPIPOLAR_COLOUR, [f"{metre} m" for metre in marks]),
-                ],
-            )
-
-    def _show_place(self, canvas: PhotoCanvas, point: Pixel | None) -> None:
-        if point is None:
-            self.status.place.setText(f"{100 * canvas.scale:.0f} %")
-            return
-        value = None if canvas.picture is None else canvas.picture.value_at(*point)
-        grey = "" if value is None else tr("grey {value}").format(value=value)
-        self.status.place.setText(f"{canvas.camera}   {point[0]:8.2f}, {point[1]:8.2f}   {grey:>9}   {100 * canvas.scale:4.0f} %")
-
     def _show_scale(self) -> None:
         if self.canvases:
             canvas = self.canvases[self._leader]
-            self._show_place(canvas, None if canvas.pointer is None else canvas.photograph_at(canvas.pointer))
+            self._pointing.show_place(canvas, None if canvas.pointer is None else canvas.photograph_at(canvas.pointer))
 
     def _same_place(self, camera: str, point: Pixel, other: str) -> Pixel | None:
         """Return the pixel of another photograph that shows what one shows, at the components' distance or in the middle of the working range."""
@@ -494,52 +404,6 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         distance = known or (near * far) ** 0.5
         u, v = target.project(source.projection_centre + distance * source.rays(np.array([point], float)))[0].tolist()
         return (u, v) if target.sees(np.array([[u, v]]))[0] else None
-
-    # keys
-
-    def _meaning_of(self, event: Any) -> Any:
-        """Return what a key does here, None where it means nothing."""
-        if self.is_closed:
-            return None
-        modifiers = event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier
-        key = event.key()
-        if modifiers == Qt.KeyboardModifier.NoModifier:
-            plain = {
-                Qt.Key.Key_Return: self.accepted.emit,
-                Qt.Key.Key_Enter: self.accepted.emit,
-                Qt.Key.Key_Escape: self._step_back,
-                Qt.Key.Key_F: self.fit,
-                Qt.Key.Key_L: self.toolbar.loupe.toggle,
-                Qt.Key.Key_Space: self._pan_with_left,
-            }
-            text = event.text()
-            if text.isdigit() and text != "0":
-                return lambda: self.digit_pressed.emit(int(text))
-            return plain.get(key)
-        if modifiers == Qt.KeyboardModifier.ControlModifier:
-            return {
-                Qt.Key.Key_1: self.one_to_one,
-                Qt.Key.Key_Z: self._undo,
-                Qt.Key.Key_Y: self._redo,
-            }.get(key)
-        if modifiers == Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.ShiftModifier and key == Qt.Key.Key_Z:
-            return self._redo
-        return None
-
-    def _step_back(self) -> None:
-        if not self._tool:
-            FreeCADGui.Selection.clearSelection(self._document_name)
-        self.stepped_back.emit()
-
-    def _undo(self) -> None:
-        FreeCAD.getDocument(self._document_name).undo()
-
-    def _redo(self) -> None:
-        FreeCAD.getDocument(self._document_name).redo()
-
-    def _pan_with_left(self, *, pans: bool = True) -> None:
-        for canvas in self.canvases:
-            canvas.set_pans_with_left(pans)
 
     # small things
 
@@ -553,7 +417,7 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         self._leader = index
 
     def _end(self) -> None:
-        """Stop everything; nothing of the document is touched any more."""
+        """Stop everything and close the sub window: nothing of the document is touched any more."""
         if self.is_closed:
             return
         self.is_closed = True
@@ -563,55 +427,10 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         if self.contours is not None:
             self.contours.stop()
         self._background.stop()
-        forget(self)
         self.closed.emit()
+        # not now: Qt and FreeCAD may be in the middle of something with both; an inner widget that is closed leaves an empty tab behind
+        QtCore.QTimer.singleShot(0, self._close_sub_window)
 
     def _close_sub_window(self) -> None:
         if is_alive(self) and is_alive(self.parent()):
             self.parent().close()
-
-
-# the windows that are open, the last used one last
-_open: list[PhotoWindow] = []
-
-
-def open_photo_window(station_object: Any) -> PhotoWindow:
-    """Return the station's photo window, raised; it is made where there is none."""
-    key = station_object.Document.Name, station_object.Name
-    window = next((w for w in _open if (w._document_name, w._object_name) == key), None)  # noqa: SLF001  # of this module
-    if window is None:
-        window = PhotoWindow(station_object)
-        area = FreeCADGui.getMainWindow().findChild(QtWidgets.QMdiArea)
-        sub_window = area.addSubWindow(window)
-        sub_window.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        sub_window.setWindowIcon(window.windowIcon())
-        sub_window.aboutToActivate.connect(lambda: _used(window))
-        _open.append(window)
-        sub_window.showMaximized()
-    window.parent().show()
-    FreeCADGui.getMainWindow().findChild(QtWidgets.QMdiArea).setActiveSubWindow(window.parent())
-    window.setFocus()
-    _used(window)
-    return window
-
-
-def photo_window() -> PhotoWindow | None:
-    """Return the photo window that was used last, None where none is open."""
-    return _open[-1] if _open else None
-
-
-def forget(window: PhotoWindow) -> None:
-    """Take a window that closes out of the list."""
-    if window in _open:
-        _open.remove(window)
-
-
-def _used(window: PhotoWindow) -> None:
-    """Remember that a window was used; its document becomes the active one, so that commands work on it."""
-    if window.is_closed or window not in _open:
-        return
-    _open.remove(window)
-    _open.append(window)
-    document = window.station_object.Document
-    if FreeCAD.ActiveDocument is None or FreeCAD.ActiveDocument.Name != document.Name:
-        FreeCAD.setActiveDocument(document.Name)

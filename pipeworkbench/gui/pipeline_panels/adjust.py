@@ -5,20 +5,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.adjusting import apply_adjustment, compute, state_of, tasks_of
 from pipeworkbench.features.document import components_in
-from pipeworkbench.features.preferences import preferences
+from pipeworkbench.features.preferences import adjustment_settings
+from pipeworkbench.gui.colours import BAD_TEXT
 from pipeworkbench.gui.compat import QtWidgets
+from pipeworkbench.gui.jobs import Progress
 from pipeworkbench.gui.panel import Buttons, Panel
 from pipeworkbench.gui.pipeline_panels.residuals import ResidualVectors
-from pipeworkbench.gui.pipeline_panels.selection import SelectionObserver, select_components, selected_components
-from pipeworkbench.gui.pipeline_panels.table import Cell, Column, Table, from_to, number
-from pipeworkbench.gui.pipeline_panels.widgets import amount, button, choice, group, switch, words
+from pipeworkbench.gui.selection import SelectionObserver, select_components, selected_components
+from pipeworkbench.gui.tables import Cell, Column, Table, from_to, number
 from pipeworkbench.gui.translation import tr
-from pipeworkbench.gui.worker import Progress
+from pipeworkbench.gui.widgets import amount, button, choice, group, switch, words
 
 if TYPE_CHECKING:
     from pipeworkbench.features.adjusting import Adjusted
@@ -28,8 +30,6 @@ if TYPE_CHECKING:
 
 ALL, SELECTED = range(2)
 SIZES = ("exact", "tolerance", "free")  # of AdjustmentSettings
-FAR_PX = 6.0  # from this search distance on the starting values are rough ones, and flanges may lie elsewhere along their pipes
-BAD = "#c0392b"
 
 
 class AdjustPanel(Panel):
@@ -47,7 +47,7 @@ class AdjustPanel(Panel):
         self._residuals = ResidualVectors(self.document)
         self._build_question()
         self._build_answer()
-        self._selection = SelectionObserver(self._count)
+        self._selection = SelectionObserver(self.document, self._count)
         self._count()
         self._show_results()
 
@@ -63,7 +63,7 @@ class AdjustPanel(Panel):
             (tr("exact"), tr("within their tolerances"), tr("not trusted")),
             tr("Diameters, bend radii and flange dimensions of standards; sizes that are no standard's are always measured"),
         )
-        self.sizes.setCurrentIndex(SIZES.index(preferences().sizes))
+        self.sizes.setCurrentIndex(SIZES.index(adjustment_settings().sizes))
         form.addRow(tr("Standard sizes"), self.sizes)
         self.reach = amount(
             3.0, (2.0, 100.0), "px", 0, tr("How far from the contours edges are looked for: more where components lie beside their pictures")
@@ -76,7 +76,7 @@ class AdjustPanel(Panel):
             tr("Level, plumb and square runs"),
             tr("Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else"),
         )
-        self.aligned.setChecked(preferences().aligned)
+        self.aligned.setChecked(adjustment_settings().aligned)
         form.addRow(self.aligned)
         self.to_neighbours = switch(
             "to_neighbours",
@@ -93,14 +93,8 @@ class AdjustPanel(Panel):
 
     def settings(self) -> AdjustmentSettings:
         """Return the settings that the panel shows."""
-        from dataclasses import replace
-
-        from pipeworkbench.recon.adjust import AdjustmentSettings
-
-        reach = self.reach.value()
-        basis = AdjustmentSettings.for_rough_values(reach) if reach > FAR_PX else AdjustmentSettings(ranges=(reach, 2.0))
         sizes: Any = SIZES[self.sizes.currentIndex()]
-        return replace(basis, sizes=sizes, aligned=self.aligned.isChecked(), gasket=self.gasket.value(), snooping=preferences().outlier_limit)
+        return replace(adjustment_settings(self.reach.value()), sizes=sizes, aligned=self.aligned.isChecked(), gasket=self.gasket.value())
 
     def _count(self) -> None:
         """Say how many components each choice means."""
@@ -131,6 +125,7 @@ class AdjustPanel(Panel):
     def _build_answer(self) -> None:
         self.answer = QtWidgets.QGroupBox(tr("Result"))
         layout = QtWidgets.QVBoxLayout(self.answer)
+        layout.setContentsMargins(4, 4, 4, 4)  # a table needs all the room there is
         self.summary = words("summary")
         layout.addWidget(self.summary)
         self.tabs = QtWidgets.QTabWidget()
@@ -138,20 +133,20 @@ class AdjustPanel(Panel):
         self.components = Table(
             "components",
             (
-                Column(tr("Component")),
+                Column(tr("Component"), names=True),
                 Column(tr("Shift mm"), tr("How far its middle moves; of pipes across their axis")),
                 Column(tr("Turn °"), tr("How far its axis turns")),
                 Column(tr("σ mm"), tr("Standard deviation of its position before and after")),
                 Column(tr("q px"), tr("RMS distance of its contours to the edges (Eq. 4) before and after")),
                 Column(tr("LOA"), tr("Level of accuracy (USIBD)")),
-                Column(tr("Note")),
+                Column(tr("Note"), names=True),
             ),
             self._choose,
         )
         self.images = Table(
             "images",
             (
-                Column(tr("Photograph")),
+                Column(tr("Photograph"), names=True),
                 Column(tr("RMS px"), tr("Of the distances between contours and edges")),
                 Column(tr("Edges %"), tr("Part of the contours' samples that have an edge")),
             ),
@@ -159,7 +154,7 @@ class AdjustPanel(Panel):
         self.gross = Table(
             "outliers",
             (
-                Column(tr("What does not fit")),
+                Column(tr("What does not fit"), names=True),
                 Column(tr("By"), tr("px in photographs, mm or degrees of conditions")),
                 Column(tr("w"), tr("Standardised size (Baarda); 3.3 and more is a gross error")),
                 Column(tr("Use"), tr("Whether it still counts")),
@@ -249,13 +244,13 @@ class AdjustPanel(Panel):
 
     def discard(self) -> None:
         """Take the residuals away."""
-        self._selection.end()
+        self._selection.stop()
         self._residuals.hide()
 
 
 def _summary(result: Adjusted) -> str:
     solution = result.solution
-    ended = tr("converged") if solution.converged else f"<b style='color:{BAD}'>{tr('did not converge')}</b>"
+    ended = tr("converged") if solution.converged else f"<b style='color:{BAD_TEXT}'>{tr('did not converge')}</b>"
     return tr("<b>Station {frame}</b>: σ₀ {sigma0}, edges ± {sigma} px, redundancy {redundancy}, {count} iterations, {ended}").format(
         frame=result.pipeline.frame,
         sigma0=number(solution.sigma0, 2).text,
@@ -269,12 +264,12 @@ def _summary(result: Adjusted) -> str:
 def _cells(change: Change, solution: Solution) -> tuple[Cell, ...]:
     before, after = change.before, change.after
     return (
-        Cell(after.id, tooltip=after.kind),
+        Cell(after.id, tooltip=f"{after.id} ({after.kind})"),
         number(change.shift, 2),
         number(change.rotation_deg, 3),
         from_to(_sigma(before), _sigma(after), 2),
         from_to(before.quality, after.quality, 2),
-        Cell(after.loa or "–"),
+        Cell((after.loa or "–").removeprefix("LOA")),
         _note(change, solution),
     )
 
@@ -284,9 +279,9 @@ def _note(change: Change, solution: Solution) -> Cell:
     if change.before.fixed:
         return Cell(tr("fixed"))
     if change.after.id in solution.undetermined:
-        return Cell(tr("not determined"), tooltip=solution.undetermined[change.after.id], colour=BAD)
+        return Cell(tr("not determined"), tooltip=solution.undetermined[change.after.id], colour=BAD_TEXT)
     if weak is not None:
-        return Cell(tr("weak"), tooltip=weak.reason, colour=BAD)
+        return Cell(tr("weak"), tooltip=weak.reason, colour=BAD_TEXT)
     return Cell("")
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,24 +10,22 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.features.adjusting import state_of
 from pipeworkbench.features.comparing import Comparison, compare_with_model, compare_with_solids, distances_to_surface, has_shape
 from pipeworkbench.features.document import components_in, pipeline_of
+from pipeworkbench.gui.colours import BAD, GOOD, POOR, Colour, hex_of
 from pipeworkbench.gui.compat import QtWidgets
 from pipeworkbench.gui.dialogs import ask_open, ask_save
+from pipeworkbench.gui.jobs import Progress
+from pipeworkbench.gui.overlay import Overlay
 from pipeworkbench.gui.panel import Buttons, Panel
-from pipeworkbench.gui.pipeline_panels.overlay import Colour, Overlay
-from pipeworkbench.gui.pipeline_panels.selection import SelectionObserver, select_components, selected_components, selected_objects
-from pipeworkbench.gui.pipeline_panels.table import Cell, Column, Table, number
-from pipeworkbench.gui.pipeline_panels.widgets import amount, button, choice, group, row, switch, text_line, words
+from pipeworkbench.gui.selection import SelectionObserver, select_components, selected_components, selected_objects
+from pipeworkbench.gui.tables import Cell, Column, Table, number
 from pipeworkbench.gui.translation import tr
-from pipeworkbench.gui.worker import Progress
+from pipeworkbench.gui.widgets import amount, beside, button, choice, group, switch, text_line, words
 
 if TYPE_CHECKING:
     from pipeworkbench.recon.plant import Deviation
 
 IFC, SOLIDS, SURFACE = range(3)
-# told apart by colour-blind people, too (Okabe and Ito)
-WITHIN: Colour = (0.0, 0.62, 0.45)
-BETWEEN: Colour = (0.94, 0.89, 0.26)
-BEYOND: Colour = (0.84, 0.37, 0.0)
+WITHIN, BETWEEN, BEYOND = GOOD, POOR, BAD
 UNKNOWN: Colour = (0.75, 0.75, 0.75)
 GOOD_MM, BAD_MM = 5.0, 20.0
 DIAMETER_DIFFERS = 0.02  # of the diameter: no mill tolerance
@@ -49,7 +46,7 @@ class DeviationsPanel(Panel):
         self._overlay = Overlay(self.document)
         self._build_question()
         self._build_answer()
-        self._selection = SelectionObserver(self._follow_selection)
+        self._selection = SelectionObserver(self.document, self._follow_selection)
         self._follow_selection()
         self._choose_source()
         self._show_result()
@@ -67,7 +64,7 @@ class DeviationsPanel(Panel):
         form.addRow(tr("Compare with"), self.source)
         self.path = text_line("path", tr("An IFC model with the pipes as designed, as IfcPipeSegment"))
         self.path.setPlaceholderText(tr("model.ifc"))
-        self.file_row = row(self.path, button("browse", "...", tr("Choose the file"), self.guard(self._browse)), stretch=False)
+        self.file_row = beside(self.path, button("browse", "...", tr("Choose the file"), self.guard(self._browse)))
         form.addRow(self.file_row)
         self.chosen = words("chosen")
         form.addRow(self.chosen)
@@ -144,20 +141,21 @@ class DeviationsPanel(Panel):
     def _build_answer(self) -> None:
         self.answer = QtWidgets.QGroupBox(tr("Deviations"))
         layout = QtWidgets.QVBoxLayout(self.answer)
+        layout.setContentsMargins(4, 4, 4, 4)  # a table needs all the room there is
         self.summary = words("summary")
         layout.addWidget(self.summary)
         self.table = Table(
             "deviations",
             (
-                Column(tr("Component"), tr("As built")),
+                Column(tr("Component"), tr("As built"), names=True),
                 Column(tr("Distance mm"), tr("Of the axes, the larger of both ends of what they have in common; of surfaces the shortest")),
                 Column(tr("Δx mm"), tr("From the design to what was built")),
                 Column(tr("Δy mm"), tr("From the design to what was built")),
                 Column(tr("Δz mm"), tr("From the design to what was built")),
                 Column(tr("Angle °"), tr("Between both axes")),
                 Column(tr("Diameter mm"), tr("As built; in red where the design has another, which the tooltip tells")),
-                Column(tr("As designed")),
-                Column(tr("Note")),
+                Column(tr("As designed"), names=True),
+                Column(tr("Note"), names=True),
             ),
             self._choose,
         )
@@ -176,7 +174,7 @@ class DeviationsPanel(Panel):
             limit.valueChanged.connect(self.guard(self._recolour))
             limits += [QtWidgets.QLabel(f"{_sample(colour)} {text}"), limit]
         _, self.good, _, self.bad = limits
-        layout.addWidget(row(*limits))
+        layout.addWidget(beside(*limits))
         layout.addWidget(button("csv", tr("Save as CSV ..."), tr("The table for a spreadsheet"), self.guard(self._save)))
         self.layout.addWidget(self.answer)
 
@@ -204,10 +202,10 @@ class DeviationsPanel(Panel):
         from pipeworkbench.exports.deviations import NOT_BUILT, NOT_DESIGNED
 
         note = NOT_BUILT if deviation.built_id is None else NOT_DESIGNED if deviation.designed_id is None else ""
-        colour = _hex(self._colour(deviation)) if deviation.distances and max(deviation.distances) > self.bad.value() else ""
+        colour = hex_of(self._colour(deviation)) if deviation.distances and max(deviation.distances) > self.bad.value() else ""
         offset = deviation.offset or (None, None, None)
         return (
-            Cell(deviation.built_id or "–", tooltip=deviation.kind),
+            Cell(deviation.built_id or "–", tooltip=f"{deviation.built_id or deviation.designed_id} ({deviation.kind})"),
             number(max(deviation.distances, default=None), 1, colour=colour),
             *(number(value, 1) for value in offset),
             number(deviation.angle_deg, 2),
@@ -259,7 +257,7 @@ class DeviationsPanel(Panel):
 
     def discard(self) -> None:
         """Give the components their own colours back."""
-        self._selection.end()
+        self._selection.stop()
         self._overlay.remove()
 
 
@@ -269,7 +267,7 @@ def _diameter(deviation: Deviation) -> Cell:
         return number(built or designed, 1)
     differs = abs(built - designed) > DIAMETER_DIFFERS * designed
     tooltip = tr("designed {designed:.1f} mm, difference {difference:+.1f} mm").format(designed=designed, difference=built - designed)
-    return number(built, 1, colour=_hex(BEYOND) if differs else "", tooltip=tooltip)
+    return number(built, 1, colour=hex_of(BEYOND) if differs else "", tooltip=tooltip)
 
 
 def _summary(comparison: Comparison, good: float, bad: float) -> str:
@@ -290,8 +288,4 @@ def _summary(comparison: Comparison, good: float, bad: float) -> str:
 
 
 def _sample(colour: Colour) -> str:
-    return f"<span style='color:{_hex(colour)}'>&#9632;</span>"
-
-
-def _hex(colour: Sequence[float]) -> str:
-    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
+    return f"<span style='color:{hex_of(colour)}'>&#9632;</span>"

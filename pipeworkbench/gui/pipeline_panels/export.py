@@ -12,12 +12,12 @@ from pipeworkbench.features.document import components_in
 from pipeworkbench.features.exporting import FORMATS, ExportTask, Format, export_task
 from pipeworkbench.features.preferences import PREFERENCES
 from pipeworkbench.gui.compat import QtCore, QtGui, QtWidgets
-from pipeworkbench.gui.dialogs import ask_save
+from pipeworkbench.gui.dialogs import ask_save, saved_files
+from pipeworkbench.gui.jobs import Progress
 from pipeworkbench.gui.panel import Panel
-from pipeworkbench.gui.pipeline_panels.selection import SelectionObserver, selected_components
-from pipeworkbench.gui.pipeline_panels.widgets import button, choice, group, row, switch, text_line, words
+from pipeworkbench.gui.selection import SelectionObserver, selected_components
 from pipeworkbench.gui.translation import tr
-from pipeworkbench.gui.worker import Progress
+from pipeworkbench.gui.widgets import beside, button, choice, group, switch, text_line, words
 
 LANGUAGES = (("en", "English"), ("de", "Deutsch"))
 ALL, SELECTED = range(2)
@@ -34,7 +34,7 @@ class ExportPanel(Panel):
     def __init__(self, document: object = None) -> None:
         super().__init__(document)
         self._build()
-        self._selection = SelectionObserver(self._count)
+        self._selection = SelectionObserver(self.document, self._count)
         self._count()
         self._suggest()
         self._choose_format()
@@ -64,7 +64,7 @@ class ExportPanel(Panel):
         form.addRow(self.options)
         self.path = text_line("path", tr("A file that is there is replaced"))
         browse = button("browse", "...", tr("Choose folder and name"), self.guard(self._browse))
-        form.addRow(tr("File"), row(self.path, browse, stretch=False))
+        form.addRow(tr("File"), beside(self.path, browse))
         self.layout.addWidget(box)
 
     def _chosen(self) -> Format:
@@ -112,6 +112,7 @@ class ExportPanel(Panel):
             photographs=self.photographs.isChecked(),
         )
         self.compute(lambda progress: _written(task, path, progress))
+        saved_files.append(path)
         FreeCAD.Console.PrintMessage(tr("written: {path}").format(path=path) + "\n")
         if path.suffix.lower() == REPORT and self.opened.isChecked():
             open_in_browser(path)
@@ -129,7 +130,7 @@ class ExportPanel(Panel):
 
     def discard(self) -> None:
         """Hear no more of the selection."""
-        self._selection.end()
+        self._selection.stop()
 
 
 class ReportPanel(ExportPanel):

@@ -10,14 +10,15 @@ from pipeworkbench.features.adjusting import frames_of, state_of
 from pipeworkbench.features.document import components_in
 from pipeworkbench.features.merging import apply_merge, compute, merge_task
 from pipeworkbench.features.preferences import adjustment_settings
+from pipeworkbench.gui.colours import BAD, BAD_TEXT, GOOD, Colour
 from pipeworkbench.gui.compat import QtCore, QtWidgets
+from pipeworkbench.gui.jobs import Progress
+from pipeworkbench.gui.overlay import Overlay
 from pipeworkbench.gui.panel import Buttons, Panel
-from pipeworkbench.gui.pipeline_panels.overlay import Colour, Overlay
-from pipeworkbench.gui.pipeline_panels.selection import select_components, selected_components
-from pipeworkbench.gui.pipeline_panels.table import Cell, Column, Table, number
-from pipeworkbench.gui.pipeline_panels.widgets import button, choice, row, switch, words
+from pipeworkbench.gui.selection import select_components, selected_components
+from pipeworkbench.gui.tables import Cell, Column, Table, number
 from pipeworkbench.gui.translation import tr
-from pipeworkbench.gui.worker import Progress
+from pipeworkbench.gui.widgets import beside, button, choice, switch, words
 
 if TYPE_CHECKING:
     from pipeworkbench.features.merging import Merged
@@ -25,11 +26,8 @@ if TYPE_CHECKING:
 
 CHECKED, UNCHECKED = QtCore.Qt.CheckState.Checked, QtCore.Qt.CheckState.Unchecked
 NAME_ROLE = QtCore.Qt.ItemDataRole.UserRole
-BAD = "#c0392b"
-# of moved stations, one after the other; of pairs that fit and that do not (Okabe and Ito)
+# of moved stations, one after the other (Okabe and Ito)
 STATION_COLOURS: tuple[Colour, ...] = ((0.90, 0.62, 0.0), (0.34, 0.71, 0.91), (0.80, 0.47, 0.65), (0.94, 0.89, 0.26))
-FITTING: Colour = (0.0, 0.62, 0.45)
-OUTLYING: Colour = (0.84, 0.37, 0.0)
 GHOST = 0.45  # transparency
 LARGE = 3.0  # standard deviations from which a pair's distance is shown in red
 
@@ -65,7 +63,7 @@ class MergePanel(Panel):
         self.stations.itemChanged.connect(lambda _item: self._list_references())
         layout.addWidget(self.stations)
         self.reference = choice("reference", (), tr("The station that stays where it is"))
-        layout.addWidget(row(QtWidgets.QLabel(tr("Reference")), self.reference, stretch=False))
+        layout.addWidget(beside(QtWidgets.QLabel(tr("Reference")), self.reference))
         self.adjusted = switch(
             "adjusted",
             tr("Adjust over all photographs"),
@@ -80,7 +78,7 @@ class MergePanel(Panel):
             self.guard(self._assign),
         )
         forget = button("forget", tr("Forget"), tr("Take back what was assigned by hand"), self.guard(self._forget))
-        layout.addWidget(row(assign, forget))
+        layout.addWidget(beside(assign, forget))
         self.assigned = words("assigned")
         layout.addWidget(self.assigned)
         self.start = button(
@@ -157,17 +155,18 @@ class MergePanel(Panel):
     def _build_answer(self) -> None:
         self.answer = QtWidgets.QGroupBox(tr("What they share"))
         layout = QtWidgets.QVBoxLayout(self.answer)
+        layout.setContentsMargins(4, 4, 4, 4)  # a table needs all the room there is
         self.summary = words("summary")
         layout.addWidget(self.summary)
         self.pairs = Table(
             "pairs",
             (
                 Column(tr("Kind")),
-                Column(tr("Component"), tr("In the station that was there before")),
-                Column(tr("is")),
+                Column(tr("Component"), tr("In the station that was there before"), names=True),
+                Column(tr("is"), names=True),
                 Column(tr("Distance mm"), tr("Between both after the adjustment of the stations' places; of pipes the larger of both ends")),
                 Column(tr("σ"), tr("The distance in standard deviations; 4 and more does not fit")),
-                Column(tr("Note")),
+                Column(tr("Note"), names=True),
             ),
             self._choose,
         )
@@ -224,8 +223,8 @@ class MergePanel(Panel):
             ends = (middles.get(pair.id_a), middles.get(pair.id_b))
             if None not in ends:
                 (outlying if pair.outlier else fitting).append(ends)
-        self._overlay.add_lines(fitting, FITTING)
-        self._overlay.add_lines(outlying, OUTLYING)
+        self._overlay.add_lines(fitting, GOOD)
+        self._overlay.add_lines(outlying, BAD)
         self._overlay.show()
 
     def _choose(self, keys: list[str]) -> None:
@@ -280,12 +279,12 @@ def _summary(merged: Merged) -> str:
                 sigma = sum(value**2 for value in extra["sigma_position"]) ** 0.5
                 text = tr("Station {station}: place ± {sigma:.2f} mm, heading ± {heading:.3f}°")
                 lines.append(text.format(station=frame, sigma=sigma, heading=extra.get("sigma_heading_deg", 0.0)))
-    lines += [f"<span style='color:{BAD}'>{problem}</span>" for problem in registration.problems]
+    lines += [f"<span style='color:{BAD_TEXT}'>{problem}</span>" for problem in registration.problems]
     return "<br>".join(lines)
 
 
 def _cells(pair: PairResidual) -> tuple[Cell, ...]:
-    colour = BAD if pair.outlier or pair.normalised > LARGE else ""
+    colour = BAD_TEXT if pair.outlier or pair.normalised > LARGE else ""
     note = tr("does not fit") if pair.outlier else tr("follows from its pipes") if pair.weight == 0 else ""
     return (
         Cell(pair.kind),

@@ -25,7 +25,7 @@ class ResidualVectors:
 
     def show(self, solutions: Sequence[Solution]) -> None:
         """Show the residuals of adjustments; windows are opened where they are needed."""
-        from pipeworkbench.gui.photos.window import open_photo_window
+        from pipeworkbench.gui.photos.windows import open_photo_window
 
         self.hide()
         objects = {obj.StationName: obj for obj in stations_in(self._document)}

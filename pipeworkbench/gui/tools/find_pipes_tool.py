@@ -7,14 +7,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from pipeworkbench.features.preferences import pick_settings
+from pipeworkbench.features.preferences import detect_settings, pick_settings
 from pipeworkbench.gui.compat import QtCore, QtWidgets
 from pipeworkbench.gui.dialogs import Cancelled
 from pipeworkbench.gui.tools.measured import components_of
 from pipeworkbench.gui.tools.proposal_tool import ProposalTool
 from pipeworkbench.gui.tools.proposals import Proposal
-from pipeworkbench.gui.tools.widgets import row_of
 from pipeworkbench.gui.translation import QT_TRANSLATE_NOOP, tr
+from pipeworkbench.gui.widgets import beside
 from pipeworkbench.gui.worker import run_long
 from pipeworkbench.pipeline import Pipe
 from pipeworkbench.recon import detect
@@ -41,7 +41,7 @@ class FindPipesTool(ProposalTool):
     def look(self) -> None:
         """Look for pipes in a thread, with a progress bar."""
         station, window = self.station, self.window
-        settings = replace(detect.DetectSettings(), working_range=pick_settings().working_range)
+        settings, measuring = detect_settings(), pick_settings()
 
         def work(progress: Progress) -> tuple[Any, ...]:
             done = 0
@@ -52,7 +52,7 @@ class FindPipesTool(ProposalTool):
                 progress(text, done, detect.STEPS + 1)
 
             progress(tr("finding edges"), 0, detect.STEPS + 1)
-            return detect.detect(window.wait_for_views(), settings, progress=report)
+            return detect.detect(window.wait_for_views(), settings, measuring, progress=report)
 
         try:
             candidates = run_long(tr("Finding pipes"), work, self.document)
@@ -96,7 +96,7 @@ class FindPipesTool(ProposalTool):
         self._slider.setToolTip(tr("Tick the pipes from this confidence on: how much likelier they are than chance, as a logarithm"))
         self._slider.valueChanged.connect(self.guard(self._tick_above))
         self._least = QtWidgets.QLabel()
-        self.layout.addLayout(row_of(QtWidgets.QLabel(tr("From")), self._slider, self._least))
+        self.layout.addWidget(beside(QtWidgets.QLabel(tr("From")), self._slider, self._least))
 
     def show_choices(self) -> None:
         """Say from which confidence on pipes are ticked."""

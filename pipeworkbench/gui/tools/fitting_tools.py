@@ -6,12 +6,13 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from pipeworkbench.catalogue import bends
+from pipeworkbench.features.preferences import assemble_settings
 from pipeworkbench.gui.compat import QtWidgets
 from pipeworkbench.gui.tools.measured import components_of
 from pipeworkbench.gui.tools.proposal_tool import ProposalTool
 from pipeworkbench.gui.tools.proposals import Proposal, fittings_found, preview, with_radius
-from pipeworkbench.gui.tools.widgets import narrow_combo
 from pipeworkbench.gui.translation import QT_TRANSLATE_NOOP, tr
+from pipeworkbench.gui.widgets import amount, choice
 from pipeworkbench.pipeline import Cap, Elbow, Reducer, Tee
 from pipeworkbench.recon.caps import FoundCap
 from pipeworkbench.recon.elbows import FoundElbow
@@ -19,7 +20,7 @@ from pipeworkbench.recon.reducers import FoundReducer
 from pipeworkbench.recon.tees import FoundTee
 from pipeworkbench.recon.views import View
 
-LARGEST_MM = 20000.0
+SMALLEST_MM, LARGEST_MM = 1.0, 20000.0
 
 
 class FittingTool(ProposalTool):
@@ -41,13 +42,13 @@ class FittingTool(ProposalTool):
     def look(self) -> None:
         """Look for fittings beside the window."""
         components = components_of(self.station_object)
-        station, kinds, chosen = self.station.name, self.kinds, self._chosen
+        station, kinds, chosen, topology = self.station.name, self.kinds, self._chosen, assemble_settings().topology
         if not components:
             self.show_found([])
             return
 
         def work(views: tuple[View, ...], _tell: object) -> list[Proposal]:
-            return fittings_found(views, components, kinds, station, chosen)
+            return fittings_found(views, components, kinds, station, chosen, topology)
 
         self.run(work, self.show_found)
 
@@ -69,6 +70,7 @@ class ElbowTool(FittingTool):
         QT_TRANSLATE_NOOP("PipeWorkbench", "Bend"),
         "px",
     )
+    names = ("Between",)
     nothing_found = QT_TRANSLATE_NOOP(
         "PipeWorkbench", "No elbows are seen between the free ends of the pipes. Measure the pipes on both sides of a bend, or select two pipes."
     )
@@ -82,15 +84,9 @@ class ElbowTool(FittingTool):
 
     def make_choices(self) -> None:
         """Add the list of radii and the box for a free one."""
-        self._bend = narrow_combo("bend")
-        self._bend.setToolTip(tr("Bend radius of the chosen elbow: one of the standard, or a free one"))
+        self._bend = choice("bend", tooltip=tr("Bend radius of the chosen elbow: one of the standard, or a free one"))
         self._bend.activated.connect(self.guard(self._bend_chosen))
-        self._radius = QtWidgets.QDoubleSpinBox()
-        self._radius.setObjectName("radius")
-        self._radius.setRange(1.0, LARGEST_MM)
-        self._radius.setDecimals(1)
-        self._radius.setSuffix(" mm")
-        self._radius.setToolTip(tr("Free bend radius; the projection follows"))
+        self._radius = amount(SMALLEST_MM, (SMALLEST_MM, LARGEST_MM), "mm", 1, tr("Free bend radius; the projection follows"), "radius")
         self._radius.valueChanged.connect(self.guard(self._radius_changed))
         form = QtWidgets.QFormLayout()
         form.addRow(tr("Bend"), self._bend)
@@ -133,7 +129,7 @@ class ElbowTool(FittingTool):
         current = self.proposals.current
         if current is None:
             return
-        changed = preview(components_of(self.station_object), with_radius(current, radius, bend), self.station.name)
+        changed = preview(components_of(self.station_object), with_radius(current, radius, bend), self.station.name, assemble_settings().topology)
         if changed is None:
             self.show_choices()
             self.say(tr("With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.").format(radius=radius), warning=True)
@@ -154,6 +150,7 @@ class TeeReducerCapTool(FittingTool):
         QT_TRANSLATE_NOOP("PipeWorkbench", "Size"),
         "px",
     )
+    names = ("At",)
     nothing_found = QT_TRANSLATE_NOOP(
         "PipeWorkbench", "No tees, reducers or caps are seen at the free ends of the pipes. Select the pipes that belong to one."
     )

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.gui.compat import QtWidgets
-from pipeworkbench.gui.panel import WARNING_COLOUR
-from pipeworkbench.gui.tools.choice_table import ChoiceTable
+from pipeworkbench.gui.colours import WARNING_TEXT
+from pipeworkbench.gui.photos.pointing import Click
+from pipeworkbench.gui.tables import ChoiceTable, Column
 from pipeworkbench.gui.tools.flange_measurement import FlangeAnswer, FlangeChoice, FlangeMeasurement, answer_flange_pick
-from pipeworkbench.gui.tools.measured import components_of, joints_among, next_pick_index, object_of
+from pipeworkbench.gui.tools.measured import components_of, joints_among, next_pick_index
 from pipeworkbench.gui.tools.pipe_measurement import CLICKED
 from pipeworkbench.gui.tools.tool import CLICK_COLOUR, CLICK_LAYER, Tool
-from pipeworkbench.gui.tools.widgets import push_button, row_of, sentence, wrapped_label
 from pipeworkbench.gui.translation import QT_TRANSLATE_NOOP, tr
+from pipeworkbench.gui.widgets import beside, button, sentence, switch, words
 from pipeworkbench.pipeline import Flange
 from pipeworkbench.recon.picks import FlangePick
 from pipeworkbench.recon.views import View
@@ -53,7 +53,6 @@ class FlangeTool(Tool):
         self.reason = ""
         self._existing_id: str | None = None if existing is None else existing.ComponentId
         self._click: tuple[str, tuple[float, float]] | None = None
-        self._accepted_ids: list[str] = []
         self._make_widgets()
 
     # what the user does
@@ -66,7 +65,7 @@ class FlangeTool(Tool):
                 self.measurement.change(flange)
         self._show()
 
-    def photo_clicked(self, click: Any) -> None:
+    def photo_clicked(self, click: Click) -> None:
         """Take a click on a rim."""
         point = (float(click.edge.point[0]), float(click.edge.point[1])) if click.edge is not None else click.point
         components, station = components_of(self.station_object), self.station
@@ -105,8 +104,7 @@ class FlangeTool(Tool):
         after, changed = self.measurement.result(before)
         stored, joints = joints_among(before, after, changed)
         self.store("Flange", stored, joints)
-        if flange.id not in self._accepted_ids:
-            self._accepted_ids.append(flange.id)
+        self.remember(flange.id)
         self._forget()
 
     def step_back(self) -> bool:
@@ -130,7 +128,7 @@ class FlangeTool(Tool):
             flange = next((one for one in components_of(self.station_object) if one.id == self._existing_id), None)
             if not isinstance(flange, Flange):
                 self._forget()
-        self._show_accepted()
+        self.show_accepted()
 
     def _forget(self) -> None:
         self.measurement.clear()
@@ -152,28 +150,26 @@ class FlangeTool(Tool):
     # what is shown
 
     def _make_widgets(self) -> None:
-        self._status = wrapped_label("status")
+        self._status = words("status")
         self.table = ChoiceTable(
-            ("", tr("Type"), "PN", tr("Score"), tr("Standard")),
+            [Column(""), Column(tr("Type"), names=True), Column("PN"), Column(tr("Score")), Column(tr("Standard"), names=True)],
             tr(
                 "Types and pressure classes, the likeliest first; the score is the logarithm of how likely the images make them, "
                 "those without one were not compared with the images"
             ),
         )
         self.table.chosen.connect(self._row_chosen)
-        self._size = wrapped_label("size")
-        self._reason = wrapped_label("reason")
-        self._reason.setStyleSheet(f"color: {WARNING_COLOUR}")
-        self._partner = QtWidgets.QCheckBox(tr("The flange facing it, too"))
-        self._partner.setToolTip(tr("Add the flange on the other side of the gasket as well, where one is seen"))
-        self._partner.setChecked(True)
+        self._size = words("size")
+        self._reason = words("reason")
+        self._reason.setStyleSheet(f"color: {WARNING_TEXT}")
+        facing = tr("Add the flange on the other side of the gasket as well, where one is seen")
+        self._partner = switch("partner", tr("The flange facing it, too"), facing, on=True)
         self._partner.toggled.connect(self.guard(self._partner_toggled))
-        self._accept = push_button(tr("Accept"), tr("Put the flange into the document (Enter)"), self.guard(self.accept_current), "accept")
-        self._clear = push_button(tr("Clear"), tr("Forget the click"), self.guard(self._forget), "clear")
-        self._accepted_label = wrapped_label("accepted")
+        self._accept = button("accept", tr("Accept"), tr("Put the flange into the document (Enter)"), self.guard(self.accept_current))
+        self._clear = button("clear", tr("Clear"), tr("Forget the click"), self.guard(self._forget))
         for widget in (self._status, self.table, self._size, self._partner, self._reason):
             self.layout.addWidget(widget)
-        self.layout.addLayout(row_of(self._accept, self._clear))
+        self.layout.addWidget(beside(self._accept, self._clear))
         self.layout.addWidget(self._accepted_label)
 
     def _show(self) -> None:
@@ -200,20 +196,16 @@ class FlangeTool(Tool):
         self._accept.setEnabled(flange is not None)
         self._clear.setEnabled(flange is not None or self._click is not None)
         self._draw()
-        self._show_accepted()
+        self.show_accepted()
 
     def _draw(self) -> None:
         flange, partner = self.measurement.flange, self.measurement.partner
         others = [(partner, False)] if partner is not None and self.measurement.with_partner else []
-        self.draw([*others, *([] if flange is None else [(flange, True)])])
+        self.draw([*others, *([] if flange is None else [(flange, True)])], still=None if self._click is None else self._click[0])
         layer = self.window.layer(CLICK_LAYER)
         layer.clear()
         if self._click is not None:
             layer.set_points(self._click[0], np.array([self._click[1]]), CLICK_COLOUR)
-
-    def _show_accepted(self) -> None:
-        there = [name for name in self._accepted_ids if object_of(self.document, name) is not None]
-        self._accepted_label.setText(tr("In the document: {names}").format(names=", ".join(there)) if there else "")
 
 
 def _texts(number: int, choice: FlangeChoice) -> tuple[str, ...]:

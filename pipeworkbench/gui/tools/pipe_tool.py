@@ -10,14 +10,15 @@ import numpy as np
 
 from pipeworkbench.catalogue import pipe_sizes
 from pipeworkbench.features.preferences import pick_settings
+from pipeworkbench.gui.colours import WARNING_TEXT
 from pipeworkbench.gui.compat import QtCore, QtWidgets
-from pipeworkbench.gui.panel import WARNING_COLOUR
-from pipeworkbench.gui.tools.choice_table import ChoiceTable
-from pipeworkbench.gui.tools.measured import components_of, joints_among, next_pick_index, object_of
+from pipeworkbench.gui.photos.pointing import Click
+from pipeworkbench.gui.tables import ChoiceTable, Column
+from pipeworkbench.gui.tools.measured import components_of, joints_among, next_pick_index
 from pipeworkbench.gui.tools.pipe_measurement import CLICKED, ClickMode, Diameter, PipeMeasurement, Request, State
 from pipeworkbench.gui.tools.tool import CLICK_COLOUR, CLICK_LAYER, Tool
-from pipeworkbench.gui.tools.widgets import narrow_combo, push_button, row_of, sentence, wrapped_label
 from pipeworkbench.gui.translation import QT_TRANSLATE_NOOP, tr
+from pipeworkbench.gui.widgets import amount, beside, button, choice, sentence, words
 from pipeworkbench.recon.candidates import PipeCandidate
 from pipeworkbench.recon.pipes import PickAnswer, Sighting, follow_pick
 from pipeworkbench.recon.views import View
@@ -25,7 +26,7 @@ from pipeworkbench.recon.views import View
 SETTLED_MS = 350  # after the last change of a diameter it is measured anew
 DRAG_RANGE = 1.6  # how many times thicker and thinner the slider goes
 DRAG_STEPS = 400
-LARGEST_MM = 3000.0
+SMALLEST_MM, LARGEST_MM = 5.0, 3000.0
 WHAT_TO_DO = {
     State.EMPTY: QT_TRANSLATE_NOOP("PipeWorkbench", "Click inside a pipe, or on one of its edges."),
     State.ONE_EDGE: QT_TRANSLATE_NOOP("PipeWorkbench", "Click on the other edge of the pipe, in the same photograph."),
@@ -59,7 +60,6 @@ class PipeTool(Tool):
         super().__init__(station_object)
         self.measurement = PipeMeasurement(self.station, next_pick_index(station_object))
         self._again = again
-        self._accepted_ids: list[str] = []
         self._settle = QtCore.QTimer(self.form)
         self._settle.setSingleShot(True)
         self._settle.setInterval(SETTLED_MS)
@@ -80,7 +80,7 @@ class PipeTool(Tool):
 
     # what the user does
 
-    def photo_clicked(self, click: Any) -> None:
+    def photo_clicked(self, click: Click) -> None:
         """Take a click on an edge or inside a pipe."""
         if self.measurement.state is State.ANSWERED:
             self.measurement.pick_index = next_pick_index(self.station_object)
@@ -101,7 +101,7 @@ class PipeTool(Tool):
         after = [*(component for component in before if component.id != pipe.id), pipe]
         components, joints = joints_among(before, after, [pipe])
         self.store("Pipe", components, joints)
-        self._accepted_ids.append(pipe.id)
+        self.remember(pipe.id)
         self._start_again()
 
     def step_back(self) -> bool:
@@ -125,7 +125,7 @@ class PipeTool(Tool):
         if self.is_open:
             if self.measurement.state is State.EMPTY:
                 self.measurement.pick_index = next_pick_index(self.station_object)
-            self._show_accepted()
+            self.show_accepted()
 
     # measuring
 
@@ -218,29 +218,23 @@ class PipeTool(Tool):
     # what is shown
 
     def _make_widgets(self) -> None:
-        self._status = wrapped_label("status")
-        self._reason = wrapped_label("reason")
-        self._reason.setStyleSheet(f"color: {WARNING_COLOUR}")
-        self._mode = narrow_combo("mode")
-        self._mode.setToolTip(tr("What a click in a photograph means"))
+        self._status = words("status")
+        self._reason = words("reason")
+        self._reason.setStyleSheet(f"color: {WARNING_TEXT}")
+        self._mode = choice("mode", tooltip=tr("What a click in a photograph means"))
         for mode, text in MODES.items():
             self._mode.addItem(tr(text), mode)
         self._mode.currentIndexChanged.connect(self.guard(self._mode_changed))
-        self._wish = narrow_combo("wish")
-        self._wish.setToolTip(tr("Which diameters are possible: those of the standard, any, or a certain one"))
+        self._wish = choice("wish", tooltip=tr("Which diameters are possible: those of the standard, any, or a certain one"))
         self._wish.addItem(tr("of the standard"), None)
         self._wish.addItem(tr("any (free)"), "free")
         for size in sorted(pipe_sizes(), key=lambda size: size.outer_diameter):
             self._wish.addItem(f"{size.designation} - {size.outer_diameter:g} mm" if size.dn else f"{size.outer_diameter:g} mm", size.outer_diameter)
         self._wish.addItem(tr("as entered below"), 0.0)
         self._wish.currentIndexChanged.connect(self.guard(self._wish_changed))
-        self._spin = QtWidgets.QDoubleSpinBox()
-        self._spin.setObjectName("diameter")
-        self._spin.setRange(5.0, LARGEST_MM)
-        self._spin.setDecimals(1)
-        self._spin.setSuffix(" mm")
+        fixing = tr("Fix the outside diameter; the projection follows, and the pipe is measured with it")
+        self._spin = amount(SMALLEST_MM, (SMALLEST_MM, LARGEST_MM), "mm", 1, fixing, "diameter")
         self._spin.setKeyboardTracking(False)
-        self._spin.setToolTip(tr("Fix the outside diameter; the projection follows, and the pipe is measured with it"))
         self._spin.valueChanged.connect(self.guard(self._spin_changed))
         self._slider = QtWidgets.QSlider(QtCore.Qt.Orientation.Horizontal)
         self._slider.setObjectName("drag")
@@ -249,18 +243,17 @@ class PipeTool(Tool):
         self._slider.valueChanged.connect(self.guard(self._slider_moved))
         self._drag_base = 0.0
         self.table = ChoiceTable(
-            ("", tr("Size"), "mm", "m", "px"),
+            [Column(title) for title in ("", tr("Size"), "mm", "m", "px")],
             tr(
                 "The pipes that the clicks can mean, the likeliest first: outside diameter, distance, and the quality, which is the mean distance "
                 "of the image's edges from the contours"
             ),
         )
         self.table.chosen.connect(self._row_chosen)
-        accept = push_button(tr("Accept"), tr("Put the chosen pipe into the document (Enter)"), self.guard(self.accept_current), "accept")
-        following = push_button(tr("Next"), tr("Show the next pipe of the list (digits choose directly)"), self.guard(self._next), "next")
-        again = push_button(tr("Clear"), tr("Forget the clicks"), self.guard(self._start_again), "clear")
+        accept = button("accept", tr("Accept"), tr("Put the chosen pipe into the document (Enter)"), self.guard(self.accept_current))
+        following = button("next", tr("Next"), tr("Show the next pipe of the list (digits choose directly)"), self.guard(self._next))
+        again = button("clear", tr("Clear"), tr("Forget the clicks"), self.guard(self._start_again))
         self._buttons = (accept, following, again)
-        self._accepted_label = wrapped_label("accepted")
         form = QtWidgets.QFormLayout()
         form.addRow(tr("A click is"), self._mode)
         form.addRow(tr("Diameter"), self._wish)
@@ -270,7 +263,7 @@ class PipeTool(Tool):
         self.layout.addLayout(form)
         self.layout.addWidget(self.table)
         self.layout.addWidget(self._reason)
-        self.layout.addLayout(row_of(*self._buttons))
+        self.layout.addWidget(beside(*self._buttons))
         self.layout.addWidget(self._accepted_label)
 
     def _mode_changed(self) -> None:
@@ -296,7 +289,7 @@ class PipeTool(Tool):
         again.setEnabled(state is not State.EMPTY)
         self._show_diameter()
         self._draw()
-        self._show_accepted()
+        self.show_accepted()
 
     def _texts(self, number: int, answer: PipeCandidate) -> tuple[str, ...]:
         diameter = answer.size.outer_diameter if answer.size else 2 * answer.solution.cylinder.radius
@@ -321,7 +314,7 @@ class PipeTool(Tool):
 
     def _draw(self) -> None:
         shown = self.measurement.shown
-        self.draw([] if shown is None else [(shown, True)], guess=self.measurement.is_guess)
+        self.draw([] if shown is None else [(shown, True)], guess=self.measurement.is_guess, still=self.measurement.camera)
         self._draw_clicks()
 
     def _draw_clicks(self) -> None:
@@ -329,7 +322,3 @@ class PipeTool(Tool):
         layer.clear()
         if self.measurement.camera is not None and self.measurement.touches:
             layer.set_points(self.measurement.camera, np.array([touch.point for touch in self.measurement.touches]), CLICK_COLOUR)
-
-    def _show_accepted(self) -> None:
-        there = [name for name in self._accepted_ids if object_of(self.document, name) is not None]
-        self._accepted_label.setText(tr("In the document: {names}").format(names=", ".join(there)) if there else "")

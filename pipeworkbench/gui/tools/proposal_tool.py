@@ -7,13 +7,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from pipeworkbench.gui.tools.choice_table import ChoiceTable
+from pipeworkbench.features.preferences import assemble_settings
+from pipeworkbench.gui.photos.pointing import Click
+from pipeworkbench.gui.tables import ChoiceTable, Column
 from pipeworkbench.gui.tools.measured import components_of, joints_among
 from pipeworkbench.gui.tools.proposals import Proposal, Proposals, applied, preview
 from pipeworkbench.gui.tools.tool import Tool
-from pipeworkbench.gui.tools.widgets import push_button, row_of, wrapped_label
 from pipeworkbench.gui.translation import QT_TRANSLATE_NOOP, tr
-from pipeworkbench.recon.image_curves import contours_in
+from pipeworkbench.gui.widgets import beside, button, words
+from pipeworkbench.recon.image_curves import contours_in, distance_to_polyline
 
 HIT_PX = 25.0  # of the photograph, from a click to the ghost that is meant
 
@@ -22,6 +24,7 @@ class ProposalTool(Tool):
     """Shows proposals; each is accepted or rejected by itself, or all that are ticked are accepted together."""
 
     headers: ClassVar[tuple[str, ...]] = ()
+    names: ClassVar[tuple[str, ...]] = ()  # headers of the columns whose texts may be cut
     nothing_found: ClassVar[str] = ""
     hint = QT_TRANSLATE_NOOP("PipeWorkbench", "Click on a proposal to choose it; Enter accepts it, Esc leaves")
 
@@ -29,6 +32,7 @@ class ProposalTool(Tool):
         super().__init__(station_object)
         self.proposals = Proposals()
         self._accepted: list[tuple[Proposal, str]] = []  # with the ids of their components
+        self._still: str | None = None  # camera in whose photograph the proposal that is shown was clicked on
         self._make_widgets()
 
     # what subclasses override
@@ -54,17 +58,19 @@ class ProposalTool(Tool):
         self.look()
         self.show_all()
 
-    def photo_clicked(self, click: Any) -> None:
+    def photo_clicked(self, click: Click) -> None:
         """Choose the proposal whose ghost was clicked on."""
         row = self._row_at(click.camera, np.array(click.point, float))
         if row is not None:
             self.proposals.row = row
+            self._still = click.camera
             self.show_all()
 
     def digit_pressed(self, number: int) -> None:
         """Choose a proposal by its number."""
         if number <= len(self.proposals.items):
             self.proposals.row = number - 1
+            self._still = None
             self.show_all()
 
     def accept_current(self) -> None:
@@ -101,7 +107,8 @@ class ProposalTool(Tool):
                 self.proposals.remove([one for one in self.proposals.items if one.key == proposal.key])
             elif name not in there and not is_listed:
                 self.proposals.add(proposal)
-        self.proposals.update(lambda proposal: preview(components, proposal, self.station.name))
+        topology = assemble_settings().topology
+        self.proposals.update(lambda proposal: preview(components, proposal, self.station.name, topology))
         self.show_all()
 
     def show_found(self, found: list[Proposal]) -> None:
@@ -133,13 +140,14 @@ class ProposalTool(Tool):
     def show_ghosts(self) -> None:
         """Draw all proposals, the one that is shown on top."""
         proposals = self.proposals
-        self.draw([(proposal.component, row == proposals.row) for row, proposal in enumerate(proposals.items)])
+        drawn = [(proposal.component, row == proposals.row) for row, proposal in enumerate(proposals.items)]
+        self.draw(drawn, alternatives=True, still=self._still)
 
     def _accept(self, accepted: list[Proposal]) -> None:
         if not accepted:
             return
         before = components_of(self.station_object)
-        after, changed, names = applied(before, accepted, self.station.name)
+        after, changed, names = applied(before, accepted, self.station.name, assemble_settings().topology)
         stored, joints = joints_among(before, after, changed)
         self.store(self.title, stored, joints)
         self._accepted += [(proposal, names[proposal.key]) for proposal in accepted if proposal.key in names]
@@ -148,33 +156,36 @@ class ProposalTool(Tool):
 
     def _row_at(self, camera: str, point: Any) -> int | None:
         """Return the row of the proposal whose outline a pixel is nearest to, None where it is far from all."""
-        outlines = [contours_in(self.station, [proposal.component])[0][camera] for proposal in self.proposals.items]
-        points = [np.concatenate(lines) if lines else np.full((1, 2), np.inf) for lines in outlines]
-        distances = [float(np.linalg.norm(outline - point, axis=1).min()) for outline in points]
-        if not distances:
+        components = [proposal.component for proposal in self.proposals.items]
+        outlines = [by_camera[camera] for by_camera in contours_in(self.station, components, range(len(components)))]
+        distances = [min((distance_to_polyline(point, line) for line in lines), default=np.inf) for lines in outlines]
+        row = int(np.argmin(distances)) if distances else -1
+        if row < 0 or not outlines[row]:
             return None
-        row = int(np.argmin(distances))
-        low, high = points[row].min(axis=0), points[row].max(axis=0)
-        is_inside = bool((low <= point).all() and (point <= high).all())
+        places = np.concatenate(outlines[row])
+        is_inside = bool((places.min(axis=0) <= point).all() and (point <= places.max(axis=0)).all())
         return row if is_inside or distances[row] <= HIT_PX else None
 
     def _make_widgets(self) -> None:
-        self._status = wrapped_label("status")
-        self.table = ChoiceTable([tr(text) for text in self.headers], tr("What was found; ticked ones are accepted together"), ticks=True)
+        self._status = words("status")
+        self.table = ChoiceTable(
+            [Column(tr(text), names=text in self.names) for text in self.headers], tr("What was found; ticked ones are accepted together"), ticks=True
+        )
         self.table.chosen.connect(self._row_chosen)
         self.table.ticked.connect(self._ticked)
-        self._accept_one = push_button(tr("Accept"), tr("Put the chosen one into the document (Enter)"), self.guard(self.accept_current), "accept")
-        self._reject_one = push_button(tr("Reject"), tr("Take the chosen one off the list"), self.guard(self.reject_current), "reject")
-        self._accept_all = push_button("", tr("Put all that are ticked into the document"), self.guard(self.accept_ticked), "accept_ticked")
+        self._accept_one = button("accept", tr("Accept"), tr("Put the chosen one into the document (Enter)"), self.guard(self.accept_current))
+        self._reject_one = button("reject", tr("Reject"), tr("Take the chosen one off the list"), self.guard(self.reject_current))
+        self._accept_all = button("accept_ticked", "", tr("Put all that are ticked into the document"), self.guard(self.accept_ticked))
         self.layout.addWidget(self._status)
         self.layout.addWidget(self.table)
         self.make_choices()
-        self.layout.addLayout(row_of(self._accept_one, self._reject_one))
+        self.layout.addWidget(beside(self._accept_one, self._reject_one))
         self.layout.addWidget(self._accept_all)
 
     def _row_chosen(self, row: int) -> None:
         with self.reporting():
             self.proposals.row = row
+            self._still = None
             self.show_choices()
             self.show_ghosts()
 

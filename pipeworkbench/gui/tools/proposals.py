@@ -11,6 +11,7 @@ from pipeworkbench.pipeline import AnyComponent, Elbow
 from pipeworkbench.recon import caps, elbows, reducers, tees
 from pipeworkbench.recon.assemble import joined_ends
 from pipeworkbench.recon.fitting import Assembly, with_caps, with_elbows, with_reducers, with_tees
+from pipeworkbench.recon.topology import TopologySettings
 from pipeworkbench.recon.views import View
 
 Found = elbows.FoundElbow | tees.FoundTee | reducers.FoundReducer | caps.FoundCap
@@ -123,7 +124,12 @@ class Proposals:
 
 
 def fittings_found(
-    views: Sequence[View], components: Sequence[AnyComponent], kinds: Iterable[type[Any]], station: str, chosen: Sequence[str] = ()
+    views: Sequence[View],
+    components: Sequence[AnyComponent],
+    kinds: Iterable[type[Any]],
+    station: str,
+    chosen: Sequence[str] = (),
+    topology: TopologySettings | None = None,
 ) -> list[Proposal]:
     """Look for fittings of some kinds between components.
 
@@ -138,11 +144,13 @@ def fittings_found(
         Its name begins the fittings' ids.
     chosen : sequence of str
         Ids of the pipes between which the user says that there is one; then the likeliest is returned even where the images hardly show it.
+    topology : TopologySettings, optional
+        Which ends are joined already.
     """
     names = tuple(component.id for component in components)
     considered = tuple(component for component in components if not chosen or component.id in chosen)
     rows = {component.id: row for row, component in enumerate(components)}
-    taken = joined_ends(components)
+    taken = joined_ends(components, topology)
     own_taken = frozenset((row, port) for row, component in enumerate(considered) for port in range(3) if (rows[component.id], port) in taken)
     wanted = set(kinds)
     found: list[Proposal] = []
@@ -151,21 +159,21 @@ def fittings_found(
             continue
         for one in detect(views, considered, FORGIVING[kind] if chosen else None, own_taken):
             whole = _renumbered(one, {row: rows[component.id] for row, component in enumerate(considered)})
-            proposal = preview(components, Proposal(components[0], whole, names, _confidence(one)), station)
+            proposal = preview(components, Proposal(components[0], whole, names, _confidence(one)), station, topology)
             if proposal is not None:
                 found.append(proposal)
     return found
 
 
-def preview(components: Sequence[AnyComponent], proposal: Proposal, station: str) -> Proposal | None:
+def preview(components: Sequence[AnyComponent], proposal: Proposal, station: str, topology: TopologySettings | None = None) -> Proposal | None:
     """Return a proposal with its component as it would be among the components as they are now, None where it is no longer possible."""
-    whole, _, names = applied(components, [proposal], station)
+    whole, _, names = applied(components, [proposal], station, topology)
     made = next((component for component in whole if component.id == names.get(proposal.key)), None)
     return None if made is None else replace(proposal, component=made)
 
 
 def applied(
-    components: Sequence[AnyComponent], proposals: Sequence[Proposal], station: str
+    components: Sequence[AnyComponent], proposals: Sequence[Proposal], station: str, topology: TopologySettings | None = None
 ) -> tuple[tuple[AnyComponent, ...], tuple[AnyComponent, ...], dict[object, str]]:
     """Put proposals among components.
 
@@ -179,7 +187,7 @@ def applied(
         The ids of the proposals' components by the proposals' keys; what is no longer possible has none.
     """
     rows = {component.id: row for row, component in enumerate(components)}
-    assembly = Assembly(tuple(components), joined_ends(components), station)
+    assembly = Assembly(tuple(components), joined_ends(components, topology), station)
     names: dict[object, str] = {}
     for kind, _, put in KINDS:
         for proposal in proposals:

@@ -10,17 +10,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, ClassVar, TypeVar
 
-import FreeCADGui
-
-from pipeworkbench.errors import InputError
-from pipeworkbench.gui.compat import QtWidgets, is_alive
+from pipeworkbench.errors import InputError, PipeWorkbenchError
+from pipeworkbench.gui.colours import rgb_of
+from pipeworkbench.gui.compat import is_alive
+from pipeworkbench.gui.jobs import Task
+from pipeworkbench.gui.overlay import Overlay
 from pipeworkbench.gui.panel import Buttons, Panel
-from pipeworkbench.gui.photos.window import PhotoWindow, open_photo_window, photo_window
-from pipeworkbench.gui.tools.ghosts import Ghosts
-from pipeworkbench.gui.tools.measured import in_document, put_into_document
-from pipeworkbench.gui.tools.task import Task
+from pipeworkbench.gui.photos.pointing import Click
+from pipeworkbench.gui.photos.window import PhotoWindow
+from pipeworkbench.gui.photos.windows import mdi_area, open_photo_window, photo_window
+from pipeworkbench.gui.tools.measured import in_document, object_of, put_into_document
 from pipeworkbench.gui.translation import tr
+from pipeworkbench.gui.widgets import words
 from pipeworkbench.pipeline import AnyComponent, Joint
+from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.image_curves import contours_in
 from pipeworkbench.recon.station import Station
 from pipeworkbench.recon.views import View
@@ -34,6 +37,7 @@ CLICK_COLOUR = "#ff4fd8"
 LAYER = "proposal"
 CLICK_LAYER = "clicks"
 WIDTH_CHOSEN, WIDTH_OTHER = 2.2, 1.4
+TRANSPARENCY = 0.45
 
 Drawn = tuple[AnyComponent, bool]  # a component, and whether it is the chosen one
 
@@ -59,15 +63,18 @@ class Tool(Panel):
         self._station_name: str = station_object.Name
         self._was_opened = False
         self._windows: list[PhotoWindow] = []
-        self._ghosts = Ghosts(self.document)
+        self._ghosts = Overlay(self.document)
+        self._revealed: list[AnyComponent] = []
         self._task = Task(self.form)
+        self._accepted_ids: list[str] = []
+        self._accepted_label = words("accepted")
 
     # what subclasses override
 
     def opened(self) -> None:
         """Begin, once the panel is shown."""
 
-    def photo_clicked(self, click: Any) -> None:
+    def photo_clicked(self, click: Click) -> None:
         """Take a click in a photograph."""
 
     def digit_pressed(self, number: int) -> None:
@@ -102,25 +109,49 @@ class Tool(Panel):
 
         It waits for the views where they are not ready yet. Errors are told in the panel.
         """
-        window = self.window
-        self._task.start(
-            lambda tell: function(window.wait_for_views(), tell), self._reported(ended), failed or self._tell_failure, self._reported(news)
-        )
+        window, tell_failure = self.window, failed or self._tell_failure
 
-    def draw(self, drawn: Sequence[Drawn], *, guess: bool = False) -> None:
-        """Show components in all photographs and in 3D, the chosen one on top; a ``guess`` is dashed."""
+        def fail(error: Exception) -> None:
+            tell_failure(str(error))
+            if not isinstance(error, PipeWorkbenchError):
+                raise error  # a defect: it is told in a dialog
+
+        self._task.start(lambda tell: function(window.wait_for_views(), tell), self._reported(ended), self._reported(fail), self._reported(news))
+
+    def draw(self, drawn: Sequence[Drawn], *, guess: bool = False, alternatives: bool = False, still: str | None = None) -> None:
+        """Show components in all photographs and in 3D, the chosen ones on top.
+
+        Parameters
+        ----------
+        drawn : sequence
+        guess : bool
+            Whether they are dashed.
+        alternatives : bool
+            Whether they may be in one another's place: then they do not hide each other.
+        still : str, optional
+            Camera whose photograph was clicked in: it stays where it is, while the others are moved to where the chosen ones are.
+        """
         if self.window.is_closed:
             return
+        components = [component for component, _ in drawn]
+        curves = contours_in(self.station, components, range(len(components)) if alternatives else None)
+        is_chosen = [chosen for _, chosen in drawn]
         layer = self.window.layer(LAYER)
         layer.live = True  # it changes while something is dragged: the photographs below need not be drawn anew
         layer.clear()
-        curves = [contours_in(self.station, [component])[0] for component, _ in drawn]
-        for camera in (camera.name for camera in self.station.cameras):
-            for chosen, colour, width in ((False, OTHER_COLOUR, WIDTH_OTHER), (True, CHOSEN_COLOUR, WIDTH_CHOSEN)):
-                lines = [line for (_, is_chosen), by_camera in zip(drawn, curves, strict=True) if is_chosen is chosen for line in by_camera[camera]]
-                if lines:
-                    layer.add_polylines(camera, lines, colour, width=width, dashed=guess)
-        self._ghosts.show((in_document(self.station_object, component), CHOSEN_COLOUR if chosen else OTHER_COLOUR) for component, chosen in drawn)
+        for chosen, colour, width in ((False, OTHER_COLOUR, WIDTH_OTHER), (True, CHOSEN_COLOUR, WIDTH_CHOSEN)):
+            lines_by_camera = _together(curve for curve, one in zip(curves, is_chosen, strict=True) if one is chosen)
+            for camera, lines in lines_by_camera.items():
+                layer.add_polylines(camera, lines, colour, width=width, dashed=guess)
+        # the chosen ones' lines; where they were shown before, the user may have looked elsewhere since
+        shown = [component for component, chosen in drawn if chosen]
+        if shown != self._revealed:
+            self._revealed = shown
+            self.window.reveal(lines_by_camera, still)
+        self._ghosts.clear()
+        for component, chosen in zip(in_document(self.station_object, components), is_chosen, strict=True):
+            self._ghosts.add_component(component, rgb_of(CHOSEN_COLOUR if chosen else OTHER_COLOUR), TRANSPARENCY)
+        self._ghosts.show()
 
     def clear_drawing(self) -> None:
         """Show no proposals any more."""
@@ -133,6 +164,16 @@ class Tool(Panel):
         """Put components of the station's level frame into the document as one step of undo."""
         return self.apply(tr(name), lambda: put_into_document(self.station_object, components, joints))
 
+    def remember(self, component_id: str) -> None:
+        """Keep in mind what was accepted, to be told at the panel's foot."""
+        if component_id not in self._accepted_ids:
+            self._accepted_ids.append(component_id)
+
+    def show_accepted(self) -> None:
+        """Tell what was accepted and is in the document: undo may have taken it out."""
+        there = [name for name in self._accepted_ids if object_of(self.document, name) is not None]
+        self._accepted_label.setText(tr("In the document: {names}").format(names=", ".join(there)) if there else "")
+
     # Panel's side
 
     def open(self) -> None:
@@ -142,9 +183,7 @@ class Tool(Panel):
         self._was_opened = True
         super().open()
         self._listen(self.window)
-        area = _mdi_area()
-        if area is not None:
-            area.subWindowActivated.connect(self._window_activated)
+        mdi_area().subWindowActivated.connect(self._window_activated)
         with self.reporting():
             self.opened()
 
@@ -155,11 +194,9 @@ class Tool(Panel):
 
     def discard(self) -> None:
         """Leave the photographs and views as they were."""
-        area = _mdi_area()
-        if area is not None:
-            area.subWindowActivated.disconnect(self._window_activated)
+        mdi_area().subWindowActivated.disconnect(self._window_activated)
         self._task.cancel()
-        self._ghosts.clear()
+        self._ghosts.remove()
         for window in self._open_windows:
             window.layer(LAYER).clear()
             window.layer(CLICK_LAYER).clear()
@@ -202,7 +239,7 @@ class Tool(Panel):
         if self.is_open and window is not None and not window.is_missing and window.station_object.Document.Name == self._document_name:
             self._listen(window)
 
-    def _take_click(self, click: Any) -> None:
+    def _take_click(self, click: Click) -> None:
         last = photo_window()  # a click makes its window the last used one
         window = last if last in self._open_windows else self.window
         with self.reporting():
@@ -243,9 +280,14 @@ class Tool(Panel):
         return told
 
     def _tell_failure(self, reason: str) -> None:
-        if self.is_open:
-            self.say(reason, warning=True)
+        self.say(reason, warning=True)
 
 
-def _mdi_area() -> Any:
-    return FreeCADGui.getMainWindow().findChild(QtWidgets.QMdiArea)
+def _together(curves: Iterable[dict[str, list[Array]]]) -> dict[str, list[Array]]:
+    """Return the lines of several components by camera; cameras that see none of them are left out."""
+    found: dict[str, list[Array]] = {}
+    for by_camera in curves:
+        for camera, lines in by_camera.items():
+            if lines:
+                found.setdefault(camera, []).extend(lines)
+    return found

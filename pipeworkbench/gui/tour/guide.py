@@ -117,8 +117,9 @@ class Guide(QtWidgets.QDockWidget):  # type: ignore[misc]  # Qt has no types
         row.addWidget(self._do, 1)
         row.addWidget(self._end)
         for widget in (self._intro, self._list, self._bar, self._text):
-            layout.addWidget(widget, 1 if widget is self._text else 0)
+            layout.addWidget(widget)
         layout.addLayout(row)
+        layout.addStretch(1)  # the buttons stay with the text that speaks of them
         self.setWidget(body)
         self.setMinimumWidth(280)
 
@@ -132,7 +133,12 @@ class Guide(QtWidgets.QDockWidget):  # type: ignore[misc]  # Qt has no types
         self._list.setFixedHeight(self._list.sizeHintForRow(0) * len(self.steps) + 2 * self._list.frameWidth() + 4)
         self._do.setVisible(step is not None)
         if step is None:
-            self._text.setText(tr("That is all. Import photographs of your own with Import Station."))
+            self._text.setText(
+                tr(
+                    "That is all. The document's other tab shows the pipeline in 3D; the keys V and F, one after the other, fit the view. "
+                    "Import photographs of your own with Import Station."
+                )
+            )
             return
         self._text.setText(tr(step.text))
         command = FreeCADGui.Command.get(step.command)

@@ -13,7 +13,7 @@ import FreeCADGui
 from pipeworkbench.gui.dialogs import saved_files
 from pipeworkbench.gui.translation import QT_TRANSLATE_NOOP
 
-PHOTO_WINDOWS = "pipeworkbench.gui.photos.window"
+PHOTO_WINDOWS = "pipeworkbench.gui.photos.windows"
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def _shows_photographs(document: Any) -> bool:
     """Tell whether a photo window of the document's station is open; it is not loaded for that."""
     windows = sys.modules.get(PHOTO_WINDOWS)
     window = windows.photo_window() if windows else None
-    return window is not None and window.station_object.Document.Name == document.Name
+    return window is not None and window.document_name == document.Name
 
 
 def _was_adjusted(document: Any) -> bool:
@@ -81,27 +81,34 @@ STEPS = (
         lambda document: len(components(document, "pipe")) >= 1,
     ),
     Step(
-        QT_TRANSLATE_NOOP("PipeWorkbench", "Measure the pipe around the corner"),
-        QT_TRANSLATE_NOOP("PipeWorkbench", "Measure the pipe that goes on behind a bend of the first one."),
+        QT_TRANSLATE_NOOP("PipeWorkbench", "Measure the next pipe"),
+        QT_TRANSLATE_NOOP("PipeWorkbench", "Measure the pipe that goes on behind a bend of the first one; the tool stays open for it."),
         "PipeWB_Pipe",
         lambda document: len(components(document, "pipe")) >= 2,
     ),
     Step(
         QT_TRANSLATE_NOOP("PipeWorkbench", "Put the elbow between them"),
-        QT_TRANSLATE_NOOP("PipeWorkbench", "Elbows are found from the pipes' axes; choose the bend radius that fits the photographs."),
+        QT_TRANSLATE_NOOP(
+            "PipeWorkbench", "Elbows are found from the pipes' axes; choose the bend radius that fits the photographs, Enter accepts it."
+        ),
         "PipeWB_Elbows",
         lambda document: len(components(document, "elbow")) >= 1,
     ),
     Step(
         QT_TRANSLATE_NOOP("PipeWorkbench", "Add a flange"),
-        QT_TRANSLATE_NOOP("PipeWorkbench", "Click on a flange of a pipe, then choose its type and pressure class from those that fit."),
+        QT_TRANSLATE_NOOP(
+            "PipeWorkbench",
+            "Click on the straight edge of a flange's rim, then choose its type and pressure class from those that fit; Enter accepts it.",
+        ),
         "PipeWB_Flange",
         lambda document: len(components(document, "flange")) >= 1,
     ),
     Step(
         QT_TRANSLATE_NOOP("PipeWorkbench", "Adjust everything"),
         QT_TRANSLATE_NOOP(
-            "PipeWorkbench", "The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous."
+            "PipeWorkbench",
+            "The adjustment fits all components to the edges of all photographs at once and makes the pipeline continuous. Press Adjust in the "
+            "panel, look at what it would change, and take it with OK.",
         ),
         "PipeWB_Adjust",
         _was_adjusted,

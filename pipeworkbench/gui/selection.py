@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""FreeCAD's selection, as the panels use it: which components are selected, selecting them by id, hearing of changes."""
+"""FreeCAD's selection, as the window uses it: which components are selected, selecting them by id, hearing of changes."""
 
 from __future__ import annotations
 
@@ -32,28 +32,26 @@ def select_components(document: Any, ids: Iterable[str]) -> None:
 
 
 class SelectionObserver:
-    """Calls a function whenever the selection changes, until it is ended; the methods' names are FreeCAD's."""
+    """Calls a function whenever the selection of a document changes, until it is stopped; the methods' names are FreeCAD's."""
 
-    def __init__(self, changed: Callable[[], None]) -> None:
+    def __init__(self, document: Any, changed: Callable[[], None]) -> None:
+        self._document = document.Name
         self._changed = changed
         FreeCADGui.Selection.addObserver(self)
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Hear no more."""
         FreeCADGui.Selection.removeObserver(self)
 
-    def addSelection(self, *_: Any) -> None:
+    def addSelection(self, document: str, *_: Any) -> None:  # FreeCAD's name
         """Something was selected."""
+        if document == self._document:
+            self._changed()
+
+    removeSelection = addSelection  # noqa: N815  # FreeCAD's name
+
+    def setSelection(self, *_: Any) -> None:  # FreeCAD's name
+        """Something else is selected, or nothing: FreeCAD does not always say where."""
         self._changed()
 
-    def removeSelection(self, *_: Any) -> None:
-        """Something is no longer selected."""
-        self._changed()
-
-    def setSelection(self, *_: Any) -> None:
-        """Something else is selected."""
-        self._changed()
-
-    def clearSelection(self, *_: Any) -> None:
-        """Nothing is selected."""
-        self._changed()
+    clearSelection = setSelection  # noqa: N815  # FreeCAD's name

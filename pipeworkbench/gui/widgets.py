@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Small parts that the panels are made of; all of them may become narrow, for FreeCAD's task panel is."""
+"""Small parts that panels and tools are made of; all of them may become narrow, for FreeCAD's task panel is."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 
 from pipeworkbench.gui.compat import QtWidgets
 
-LEAST_CHARACTERS = 10  # that a list shows where there is little room
+LEAST_CHARACTERS = 8  # that a list shows where there is little room
+LEAST_BUTTON_PX = 40
 
 
 def group(title: str) -> tuple[Any, Any]:
@@ -20,7 +21,7 @@ def group(title: str) -> tuple[Any, Any]:
     return box, form
 
 
-def choice(name: str, items: Sequence[str], tooltip: str = "") -> Any:
+def choice(name: str, items: Sequence[str] = (), tooltip: str = "") -> Any:
     """Return a list to choose one from."""
     box = QtWidgets.QComboBox()
     box.setObjectName(name)
@@ -45,13 +46,15 @@ def button(name: str, text: str, tooltip: str, pressed: Callable[..., None]) -> 
     made = QtWidgets.QPushButton(text)
     made.setObjectName(name)
     made.setToolTip(tooltip)
+    made.setMinimumWidth(LEAST_BUTTON_PX)
     made.clicked.connect(pressed)
     return made
 
 
-def amount(value: float, limits: tuple[float, float], unit: str, decimals: int, tooltip: str = "") -> Any:
+def amount(value: float, limits: tuple[float, float], unit: str, decimals: int, tooltip: str = "", name: str = "") -> Any:
     """Return a field for a number with a unit."""
     box = QtWidgets.QDoubleSpinBox()
+    box.setObjectName(name)
     box.setDecimals(decimals)
     box.setRange(*limits)
     box.setValue(value)
@@ -69,20 +72,25 @@ def text_line(name: str, tooltip: str = "", text: str = "") -> Any:
 
 
 def words(name: str) -> Any:
-    """Return a text that wraps."""
+    """Return a text that wraps, no higher than it must be."""
     label = QtWidgets.QLabel()
     label.setObjectName(name)
+    label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Preferred, QtWidgets.QSizePolicy.Policy.Maximum)
     label.setWordWrap(True)
     return label
 
 
-def row(*widgets: Any, stretch: bool = True) -> Any:
+def beside(*widgets: Any) -> Any:
     """Return a widget that holds others beside each other."""
     holder = QtWidgets.QWidget()
+    holder.setSizePolicy(QtWidgets.QSizePolicy.Policy.Preferred, QtWidgets.QSizePolicy.Policy.Maximum)
     layout = QtWidgets.QHBoxLayout(holder)
     layout.setContentsMargins(0, 0, 0, 0)
     for widget in widgets:
         layout.addWidget(widget)
-    if stretch:
-        layout.addStretch(1)
     return holder
+
+
+def sentence(reason: str) -> str:
+    """Return a reason as it is read: with a capital and a full stop."""
+    return reason[:1].upper() + reason[1:].removesuffix(".") + "." if reason else ""
