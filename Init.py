@@ -10,5 +10,6 @@ from pipeworkbench.environment import use_environment
 
 use_environment(Path(pipeworkbench.__file__).resolve().parent.parent)
 
-# for FreeCAD's File > Export; what else there is to export has endings that FreeCAD's own exporters have, too
+# for FreeCAD's File > Export, where the type that is chosen says which exporter of an ending is meant
 FreeCAD.addExportType("Table of pipes and fittings (*.csv)", "pipeworkbench.features.table_export")
+FreeCAD.addExportType("IFC of pipes and fittings (*.ifc)", "pipeworkbench.features.table_export")

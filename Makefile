@@ -34,6 +34,7 @@ bench: setup  ## accuracy and time of the steps, beside peers where these are to
 	$(python) bench/measuring.py
 	$(python) bench/reconstruct.py
 	$(python) bench/recompute.py
+	$(python) bench/ifc.py
 	[ ! -d ../shared ] || $(python) bench/elbows_flanges.py ../shared --out $(results)/elbows_flanges.md
 	[ ! -d ../shared ] || $(python) bench/adjust.py ../shared --out $(results)/adjust.md
 	$(python) bench/register.py

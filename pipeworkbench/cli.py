@@ -98,6 +98,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--json", action="store_true", help="print a machine-readable summary instead of the table")
     _add_catalogue(command)
     _add_language(command)
+    cli_place.add_ifc_schema(command)
     command.set_defaults(run=_reconstruct)
     _add_convert(commands)
     return parser
@@ -125,6 +126,7 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
     command.add_argument("--quiet", action="store_true", help="no output, no warnings")
     _add_catalogue(command)
     _add_language(command)
+    cli_place.add_ifc_schema(command)
     command.set_defaults(run=_convert)
     cli_place.add_parser(commands)
 
@@ -184,13 +186,13 @@ def _written(options: argparse.Namespace, pipeline: Pipeline, separate: Sequence
 
     outputs = list(options.out)
     for path in options.out:
-        write(Result(pipeline, tuple(stations), options.language), path)
+        write(Result(pipeline, tuple(stations), options.language, options.ifc_schema), path)
     for one in separate:
         # a station may be called what no file can be
         name = re.sub(r"[^\w.-]", "_", one.frame)
         for path in options.out:
             own = path.with_stem(free_id(f"{path.stem}-{name}", {other.stem for other in outputs if other.suffix == path.suffix}))
-            write(Result(one, tuple(stations), options.language), own)
+            write(Result(one, tuple(stations), options.language, options.ifc_schema), own)
             outputs.append(own)
     return outputs
 
@@ -316,7 +318,7 @@ def _convert_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> int:
             raise InputError(COMMAND_LINE, f"--{name.replace('_', '-')}", f"is for rigs, {options.input} is a pipeline", "leave it out")
     check_paths(options.out, has_photographs=False, inputs=(options.input,))
     for path in options.out:
-        write(Result(pipeline, language=options.language), path)
+        write(Result(pipeline, language=options.language, ifc_schema=options.ifc_schema), path)
         if not options.quiet:
             print(f"written: {path}")
     return DONE

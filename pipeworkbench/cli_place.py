@@ -36,7 +36,13 @@ def add_parser(commands: Any) -> None:
     command.add_argument("--deviations", metavar="FILE.csv", type=Path, help="with --onto: as designed beside as built, per component")
     command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output, may be repeated")
     command.add_argument("--quiet", action="store_true", help="no output")
+    add_ifc_schema(command)
     command.set_defaults(run=run)
+
+
+def add_ifc_schema(command: argparse.ArgumentParser) -> None:
+    """Add the option that says which schema IFC is written in."""
+    command.add_argument("--ifc-schema", choices=["IFC4", "IFC4X3_ADD2"], default="IFC4", help="of outputs that end in .ifc; default: IFC4")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -73,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
             write_deviations(found.deviations, options.deviations)
             said.append(f"written: {options.deviations}")
     for path in options.out:
-        write(Result(result), path)
+        write(Result(result, ifc_schema=options.ifc_schema), path)
         said.append(f"written: {path}")
     if not options.quiet:
         print("\n".join(said))

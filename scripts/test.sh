@@ -9,6 +9,9 @@ site=$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"
 say() { printf '\n[test] %s\n' "$*"; }
 failed=0
 
+say "web-ifc, which reads IFC independently"
+bash scripts/web_ifc/install.sh
+
 say "plain pytest"
 .venv/bin/python -m pytest -q "$@" || failed=1
 

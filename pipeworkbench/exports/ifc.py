@@ -1,206 +1,325 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""IFC4: pipes as IfcPipeSegment, everything else as IfcPipeFitting, in millimetres.
+"""IFC: pipes as IfcPipeSegment, everything else as IfcPipeFitting, in millimetres; IFC4 (Reference View) or IFC 4.3.
 
-IFC4 names what a fitting does, not what it is: an elbow is a BEND, a tee a JUNCTION, a reducer a TRANSITION. A flange
-is a CONNECTOR, which joins two pipes (the enumeration has no flange); a cap and a blind flange, which close a pipe's
-end, are an OBSTRUCTION. What it is stands in ObjectType.
+IFC names what a fitting does, not what it is: an elbow is a BEND, a tee a JUNCTION, a reducer a TRANSITION. A flange is a CONNECTOR, which
+joins two pipes (the enumeration has no flange), with the ElementType FLANGE; a cap and a blind flange, which close a pipe's end, are an
+OBSTRUCTION. That stands on types, one for each distinct dimension, with the body that their fittings share; a pipe has its own length and
+therefore its own body. Ports are nested in the components and connected at every joint; components between open ends and branches are a
+system.
+
+GlobalIds derive from the project and the components' ids, and everything is written in the pipeline's order: the same pipeline with the same
+timestamp gives the same file, byte by byte, and a pipe that was moved changes nothing but what is its own and the ports joined to it.
 """
 
 from __future__ import annotations
 
+import os
 import time
-import uuid
-from collections.abc import Mapping
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from pipeworkbench import __version__
-from pipeworkbench.errors import MissingPackageError
-from pipeworkbench.exports.ifc_properties import property_sets
-from pipeworkbench.exports.ifc_shapes import Shapes
-from pipeworkbench.exports.kinds import COLOURS, designation
+import numpy as np
+
+from pipeworkbench.catalogue import pipe_size
+from pipeworkbench.errors import InputError
+from pipeworkbench.exports.ifc_coverings import Insulation, covering_body, covering_quantities, insulation_of
+from pipeworkbench.exports.ifc_file import ORIGIN, Entities, digest, finite, label, rounded
+from pipeworkbench.exports.ifc_network import SINK, SOURCE, Network, connection_type, network_of
+from pipeworkbench.exports.ifc_properties import AS_BUILT, Properties, Quantities, as_built_properties, port_properties, quantities, shared_sets
+from pipeworkbench.exports.ifc_shapes import Body, Shapes
+from pipeworkbench.exports.ifc_spatial import Spatial, on_map, project_key, skeleton
+from pipeworkbench.exports.ifc_types import Types
+from pipeworkbench.exports.ifc_update import carry_over
 from pipeworkbench.files import written_whole
-from pipeworkbench.pipeline import BLIND_FLANGE, AnyComponent, Cap, Elbow, Flange, Pipe, Pipeline, Reducer, Tee
+from pipeworkbench.pipeline import AnyComponent, Flange, Pipe, Pipeline, Port, Tee
+from pipeworkbench.recon.topology import runs_of
 from pipeworkbench.solids import Frame, frame_of
 
 if TYPE_CHECKING:
     import ifcopenshell
 
-NAMESPACE = uuid.UUID("7a1f4d55-3c5e-4f0b-9b55-0d6c8ac1e2f4")  # of this program's GlobalIds
-APPLICATION = "Pipe Workbench"
+Schema = Literal["IFC4", "IFC4X3_ADD2"]
+SCHEMAS: tuple[Schema, ...] = ("IFC4", "IFC4X3_ADD2")
+SHORTEST_MM = 0.001  # of what can be written: IFC wants positive lengths
+SYSTEM = "system"  # what a component's extra calls the user's name of its run
+PORT_NAMES = ("start", "end", "branch")
+FLANGE_PORT_NAMES = ("face", "weld end")
 
 
-def write_ifc(pipeline: Pipeline, path: Path) -> None:
-    """Write an IFC4 file; the same pipeline always gives the same GlobalIds."""
-    file = ifc_model(pipeline, path.name)
+@dataclass(frozen=True)
+class IfcOptions:
+    """How to write IFC: its schema, and the time that the file says it was written (seconds since 1970, UTC; now where it is not given).
+
+    The environment's ``SOURCE_DATE_EPOCH`` stands for now where it is set, as reproducible builds have it.
+    """
+
+    schema: Schema = "IFC4"
+    timestamp: int | None = None
+
+    @property
+    def seconds(self) -> int:
+        """The time of writing, seconds since 1970."""
+        if self.timestamp is not None:
+            return self.timestamp
+        given = os.environ.get("SOURCE_DATE_EPOCH", "")
+        return int(given) if given.isdecimal() else int(time.time())
+
+
+def write_ifc(pipeline: Pipeline, path: Path, options: IfcOptions | None = None) -> None:
+    """Write an IFC file, whole or not at all.
+
+    Where the file is there already and holds the same project, what others added to it stays with the components that are still there:
+    property sets, classifications, documents and groups.
+
+    Raises
+    ------
+    InputError
+        Where a component cannot be written, two have the same id, a joint does not fit, or the file cannot be written.
+    MissingPackageError
+        Where ifcopenshell is not installed.
+    """
+    file = ifc_model(pipeline, path.name, options)
+    carry_over(path, file)
+    text = file.to_string().encode("utf-8")
+    # written by Python, which says when the disk is full
     with written_whole(path) as temporary:
-        file.write(str(temporary))
+        temporary.write_bytes(text)
 
 
-def ifc_model(pipeline: Pipeline, name: str = "pipeline.ifc") -> ifcopenshell.file:
-    """Return the pipeline as an ifcopenshell model."""
-    try:
-        import ifcopenshell
-    except ImportError:
-        raise MissingPackageError("ifcopenshell", "Writing IFC", "pip install 'ifcopenshell>=0.8.4,<0.10'") from None
-
-    file = ifcopenshell.file(schema="IFC4")
-    _header(file, name)
-    builder = _Builder(file, pipeline.frame)
-    storey, body, axis = builder.skeleton()
-    products = [builder.product(component, storey, body, axis) for component in pipeline.components]
-    if products:
-        builder.root("IfcRelContainedInSpatialStructure", "contained", RelatedElements=products, RelatingStructure=storey)
-    return file
+def ifc_model(pipeline: Pipeline, name: str = "pipeline.ifc", options: IfcOptions | None = None) -> ifcopenshell.file:
+    """Return the pipeline as an ifcopenshell model; errors are those of `write_ifc`."""
+    options = options or IfcOptions()
+    if options.schema not in SCHEMAS:
+        raise InputError(name, "schema", f"is {options.schema!r}", f"use one of {', '.join(SCHEMAS)}")
+    _refuse(pipeline)
+    project, (local, place) = project_key(pipeline), on_map(pipeline)
+    entities = Entities(options.schema, project, options.seconds, name)
+    title = pipeline.extra.get("project")
+    spatial = skeleton(entities, title if isinstance(title, str) and title else project, place)
+    _Plant(entities, spatial, local).write()
+    return entities.file
 
 
-def _header(file: ifcopenshell.file, name: str) -> None:
-    file.header.file_description.description = ("ViewDefinition [ReferenceView_V1.2]",)
-    file.header.file_name.name = name
-    file.header.file_name.originating_system = f"{APPLICATION} - {__version__}"
-    file.header.file_name.preprocessor_version = f"{APPLICATION} {__version__}"
+class _Plant:
+    """Writes a pipeline's components and what belongs to them into a file that has its skeleton."""
 
+    def __init__(self, entities: Entities, spatial: Spatial, pipeline: Pipeline) -> None:
+        self.entities, self.spatial, self.pipeline = entities, spatial, pipeline
+        self.shapes = Shapes(entities)
+        self.types = Types(entities, self.shapes, spatial.body)
+        self.network: Network = network_of(pipeline.components, pipeline.joints, pipeline.frame)
+        self.ports: dict[tuple[str, int], Any] = {}
+        self.described: dict[tuple[str, str], tuple[Any, list[Any]]] = {}  # property and quantity sets that several things share
+        said = pipeline.extra.get("date")
+        self.date = said if isinstance(said, str) else entities.file.header.file_name.time_stamp[:10]
 
-class _Builder:
-    """Adds entities to one IFC file; keeps the owner history and the name its GlobalIds derive from."""
-
-    def __init__(self, file: ifcopenshell.file, project: str) -> None:
-        self.file, self.project = file, project
-        self.shapes = Shapes(file)
-        self.styles: dict[type[AnyComponent], Any] = {}
-        self.history = self._owner_history()
-
-    def add(self, kind: str, **attributes: Any) -> Any:
-        return self.file.create_entity(kind, **attributes)
-
-    def root(self, kind: str, key: str, **attributes: Any) -> Any:
-        """Add a rooted entity with a GlobalId that depends on the project, its kind and ``key`` only."""
-        import ifcopenshell.guid
-
-        identity = uuid.uuid5(NAMESPACE, f"{self.project}/{kind}/{key}")
-        return self.add(kind, GlobalId=ifcopenshell.guid.compress(identity.hex), OwnerHistory=self.history, **attributes)
-
-    def skeleton(self) -> tuple[Any, Any, Any]:
-        """Add project, site, building and storey; return the storey and the body and axis contexts."""
-        units = self.add(
-            "IfcUnitAssignment",
-            Units=[
-                self.add("IfcSIUnit", UnitType="LENGTHUNIT", Prefix="MILLI", Name="METRE"),
-                self.add("IfcSIUnit", UnitType="AREAUNIT", Name="SQUARE_METRE"),
-                self.add("IfcSIUnit", UnitType="VOLUMEUNIT", Name="CUBIC_METRE"),
-                self.add("IfcSIUnit", UnitType="PLANEANGLEUNIT", Name="RADIAN"),
-                self.add("IfcSIUnit", UnitType="PRESSUREUNIT", Name="PASCAL"),
-            ],
-        )
-        model = self.add(
-            "IfcGeometricRepresentationContext",
-            ContextType="Model",
-            CoordinateSpaceDimension=3,
-            Precision=1e-5,
-            WorldCoordinateSystem=self.shapes.axes(),
-        )
-        body, axis = (
-            self.add(
-                "IfcGeometricRepresentationSubContext",
-                ContextIdentifier=name,
-                ContextType="Model",
-                ParentContext=model,
-                TargetView=view,
+    def write(self) -> None:
+        """Write everything, in the pipeline's order."""
+        products = {component.id: self.component(component) for component in self.pipeline.components}
+        self.types.relate()
+        for key, (described, things) in self.described.items():
+            many = {"RelatingPropertyDefinition": described, "RelatedObjects": tuple(things)}
+            self.entities.root("IfcRelDefinesByProperties", "/".join(key), **many)
+        self.joints()
+        self.systems(products)
+        if products:
+            self.entities.relate(
+                "IfcRelContainedInSpatialStructure", "contained", "RelatingStructure", "RelatedElements", self.spatial.storey, list(products.values())
             )
-            for name, view in (("Body", "MODEL_VIEW"), ("Axis", "GRAPH_VIEW"))
-        )
-        project = self.root("IfcProject", "project", Name=self.project, RepresentationContexts=[model], UnitsInContext=units)
-        parent, placement = project, None
-        for kind, name in (("IfcSite", "Site"), ("IfcBuilding", "Building"), ("IfcBuildingStorey", "Storey")):
-            placement = self.add("IfcLocalPlacement", PlacementRelTo=placement, RelativePlacement=self.shapes.axes())
-            child = self.root(kind, name, Name=name, ObjectPlacement=placement, CompositionType="ELEMENT")
-            self.root("IfcRelAggregates", name, RelatingObject=parent, RelatedObjects=[child])
-            parent = child
-        return parent, body, axis
 
-    def product(self, component: AnyComponent, storey: Any, body: Any, axis: Any) -> Any:
-        """Add a component, modelled in its own axes, with its place, colour and properties."""
+    def component(self, component: AnyComponent) -> Any:
+        """Add a component with its place, body, ports and what is known of it."""
+        self.entities.begin_component()
         frame = frame_of(component)
-        placement = self.add("IfcLocalPlacement", PlacementRelTo=storey.ObjectPlacement, RelativePlacement=self._place(frame))
-        kind, items = self.shapes.body(component, frame)
-        for item in items:
-            self.add("IfcStyledItem", Item=item, Styles=[self._style(type(component))])
-        representations = [
-            self.add("IfcShapeRepresentation", ContextOfItems=body, RepresentationIdentifier="Body", RepresentationType=kind, Items=items)
-        ]
-        if isinstance(component, Pipe):
-            line = self.shapes.line(component.length)
-            representations.insert(
-                0,
-                self.add("IfcShapeRepresentation", ContextOfItems=axis, RepresentationIdentifier="Axis", RepresentationType="Curve3D", Items=[line]),
-            )
-        made = self.root(
+        placement = self.place(self.spatial.storey.ObjectPlacement, frame)
+        typed = self.types.of(component, frame)
+        product = self.entities.root(
             "IfcPipeSegment" if isinstance(component, Pipe) else "IfcPipeFitting",
             component.id,
-            Name=component.id,
-            Description=designation(component),
-            ObjectType=designation(component),
+            Name=label(_name(component)),
             ObjectPlacement=placement,
-            Representation=self.add("IfcProductDefinitionShape", Representations=representations),
-            Tag=component.id,
-            PredefinedType=predefined_type(component),
+            Representation=self.representation(component, typed.mapped),
+            Tag=label(component.id),
         )
-        for name, values in property_sets(component).items():
-            self._properties(made, component.id, name, values)
-        return made
+        typed.occurrences.append(product)
+        as_built = f"{component.id}/{AS_BUILT}"
+        self.describe(product, as_built, self.types.property_set(as_built, AS_BUILT, as_built_properties(component, self.date)))
+        for name, properties in shared_sets(component, self.entities.schema).items():
+            self.share(product, name, properties)
+        name, found = quantities(component)
+        if isinstance(component, Pipe):
+            self.describe(product, f"{component.id}/{name}", self.quantity_set(f"{component.id}/{name}", name, found))
+        else:
+            self.share_quantities(product, typed.key, name, found)
+        self.nest_ports(component, product, frame)
+        insulation = insulation_of(component)
+        if insulation is not None:
+            self.covering(component, product, insulation, frame)
+        return product
 
-    def _properties(self, product: Any, key: str, name: str, values: Mapping[str, tuple[str, Any]]) -> None:
-        properties = [
-            self._enumerated(label, value)
-            if kind == "enumerated"
-            else self.add("IfcPropertySingleValue", Name=label, NominalValue=self.file.create_entity(kind, value))
-            for label, (kind, value) in values.items()
-        ]
-        pset = self.root("IfcPropertySet", f"{key}/{name}", Name=name, HasProperties=properties)
-        self.root("IfcRelDefinesByProperties", f"{key}/{name}", RelatedObjects=[product], RelatingPropertyDefinition=pset)
+    def place(self, parent: Any, frame: Frame) -> Any:
+        """Return a frame as a placement relative to another."""
+        axes = self.entities.axes(frame.origin.tolist(), frame.z.tolist(), frame.x.tolist())
+        return self.entities.add("IfcLocalPlacement", PlacementRelTo=parent, RelativePlacement=axes)
 
-    def _enumerated(self, name: str, value: str) -> Any:
-        return self.add("IfcPropertyEnumeratedValue", Name=name, EnumerationValues=[self.file.create_entity("IfcLabel", value)])
+    def representation(self, component: AnyComponent, mapped: Any | None) -> Any:
+        """Return a component's shapes: a pipe's axis and its own body, a fitting's body as its type has it."""
+        add = self.entities.add
+        if mapped is not None:
+            item = add("IfcMappedItem", MappingSource=mapped, MappingTarget=self.types.as_it_is)
+            shapes = [self.types.shape("MappedRepresentation", [item])]
+        else:
+            axis = {"RepresentationIdentifier": "Axis", "RepresentationType": "Curve3D", "Items": (self.shapes.line(component.length),)}
+            body = self.types.styled(self.shapes.body(component, frame_of(component)), type(component))
+            shapes = [add("IfcShapeRepresentation", ContextOfItems=self.spatial.axis, **axis), self.types.shape(*body)]
+        return add("IfcProductDefinitionShape", Representations=tuple(shapes))
 
-    def _style(self, kind: type[AnyComponent]) -> Any:
-        """Return the surface style of a kind of components, which all of that kind share."""
-        if kind not in self.styles:
-            red, green, blue = COLOURS[kind]
-            shading = self.add("IfcSurfaceStyleShading", SurfaceColour=self.add("IfcColourRgb", Red=red, Green=green, Blue=blue))
-            self.styles[kind] = self.add("IfcSurfaceStyle", Name=kind.kind, Side="BOTH", Styles=[shading])
-        return self.styles[kind]
+    def describe(self, thing: Any, key: str, definition: Any) -> None:
+        """Relate a property or quantity set of its own to a thing."""
+        self.entities.root("IfcRelDefinesByProperties", key, RelatedObjects=(thing,), RelatingPropertyDefinition=definition)
 
-    def _place(self, frame: Frame) -> Any:
-        return self.shapes.axes(frame.origin, frame.z, frame.x)
+    def share(self, thing: Any, name: str, properties: Properties) -> None:
+        """Describe a thing with a property set that it has in common with others."""
+        key = name, digest(properties)
+        if key not in self.described:
+            self.described[key] = self.types.shared_set(name, properties), []
+        self.described[key][1].append(thing)
 
-    def _owner_history(self) -> Any:
-        now = int(time.time())
-        organisation = self.add("IfcOrganization", Name=APPLICATION)
-        person = self.add("IfcPersonAndOrganization", ThePerson=self.add("IfcPerson", FamilyName="User"), TheOrganization=organisation)
-        application = self.add(
-            "IfcApplication",
-            ApplicationDeveloper=organisation,
-            Version=__version__,
-            ApplicationFullName=APPLICATION,
-            ApplicationIdentifier="PipeWorkbench",
+    def share_quantities(self, thing: Any, key: str, name: str, found: Quantities) -> None:
+        """Describe a fitting with the quantities of its type."""
+        if (name, key) not in self.described:
+            self.described[name, key] = self.quantity_set(f"{name}/{key}", name, found), []
+        self.described[name, key][1].append(thing)
+
+    def quantity_set(self, key: str, name: str, found: Quantities) -> Any:
+        """Return a set of base quantities."""
+        made = tuple(self.entities.quantity(quantity, kind, value) for quantity, (kind, value) in found.items())
+        return self.entities.root("IfcElementQuantity", key, Name=name, MethodOfMeasurement="BaseQuantities", Quantities=made)
+
+    def nest_ports(self, component: AnyComponent, product: Any, frame: Frame) -> None:
+        """Add a component's ports: where its joints are, their z axes along the flow."""
+        names = FLANGE_PORT_NAMES if isinstance(component, Flange) else PORT_NAMES
+        turn, made = np.array([frame.x, frame.y, frame.z]), []
+        for number, port in enumerate(component.ports):
+            end = component.id, number
+            place, flow = self.network.places[end], self.network.flow[end]
+            along = turn @ np.array(port.direction) * (1.0 if flow == SOURCE else -1.0)
+            axes = self._port_axes(turn @ (np.array(place) - frame.origin), along)
+            made.append(
+                self.entities.root(
+                    "IfcDistributionPort",
+                    f"{component.id}/{number}",
+                    Name=names[number],
+                    ObjectPlacement=self.entities.add("IfcLocalPlacement", PlacementRelTo=product.ObjectPlacement, RelativePlacement=axes),
+                    FlowDirection=flow,
+                    PredefinedType="PIPE",
+                    SystemType="NOTDEFINED",
+                )
+            )
+            self.ports[end] = made[-1]
+            connection = connection_type(component, number, joined=end in self.network.partners)
+            self.share(made[-1], "Pset_DistributionPortTypePipe", port_properties(connection, *_size(component, port)))
+        self.entities.relate("IfcRelNests", component.id, "RelatingObject", "RelatedObjects", product, made)
+
+    def joints(self) -> None:
+        """Connect the ports of every joint, from where it flows out to where it flows in."""
+        for joint in self.pipeline.joints:
+            ends = sorted([(joint.a, int(joint.a_port)), (joint.b, int(joint.b_port))])
+            source, sink = sorted(ends, key=lambda end: self.network.flow[end] == SINK)
+            self.entities.root("IfcRelConnectsPorts", repr(ends), RelatingPort=self.ports[source], RelatedPort=self.ports[sink])
+
+    def systems(self, products: dict[str, Any]) -> None:
+        """Group what follows each other between open ends and branches; a tee belongs to the run at its own run's start."""
+        members: dict[str, list[str]] = {}
+        titles: dict[str, str] = {}
+        of: dict[str, str] = {}
+        by_id = {component.id: component for component in self.pipeline.components}
+        runs = runs_of(self.pipeline.components, self.pipeline.joints)
+        order = {component.id: index for index, component in enumerate(self.pipeline.components)}
+        for run in sorted((sorted(run, key=order.__getitem__) for run in runs), key=lambda run: order[run[0]]):
+            self._join(members, titles, of, run, by_id)
+        for tee in (component for component in self.pipeline.components if isinstance(component, Tee)):
+            partners = [self.network.partners.get((tee.id, port)) for port in range(3)]
+            key = next((of[end[0]] for end in partners if end is not None and end[0] in of), None)
+            if key is None or tee.extra.get(SYSTEM):
+                self._join(members, titles, of, [tee.id], by_id)
+            else:
+                of[tee.id] = key
+                members[key].append(tee.id)
+        made = []
+        for key, ids in members.items():
+            system = self.entities.root("IfcDistributionSystem", key, Name=label(titles[key]), PredefinedType="NOTDEFINED")
+            inside = [products[name] for name in sorted(ids, key=order.__getitem__)]
+            self.entities.relate("IfcRelAssignsToGroup", key, "RelatingGroup", "RelatedObjects", system, inside)
+            made.append(system)
+        if made and self.entities.schema == "IFC4":
+            for key, system in zip(members, made, strict=True):
+                self.entities.relate("IfcRelServicesBuildings", key, "RelatingSystem", "RelatedBuildings", system, [self.spatial.building])
+        elif made:
+            # IFC 4.3 has deprecated the other relation
+            kind = "IfcRelReferencedInSpatialStructure"
+            self.entities.relate(kind, "systems", "RelatingStructure", "RelatedElements", self.spatial.building, made)
+
+    def covering(self, component: AnyComponent, product: Any, insulation: Insulation, frame: Frame) -> None:
+        """Add a component's insulation as a part of it."""
+        body: Body = self.types.styled(covering_body(self.shapes, component, insulation, frame), Insulation)
+        typed = self.types.covering(insulation)
+        placement = self.entities.add("IfcLocalPlacement", PlacementRelTo=product.ObjectPlacement, RelativePlacement=self.entities.identity)
+        made = self.entities.root(
+            "IfcCovering",
+            component.id,
+            Name=label(f"{_name(component)} insulation"),
+            ObjectPlacement=placement,
+            Representation=self.entities.add("IfcProductDefinitionShape", Representations=(self.types.shape(*body),)),
+            Tag=label(component.id),
         )
-        return self.add(
-            "IfcOwnerHistory", OwningUser=person, OwningApplication=application, ChangeAction="ADDED", LastModifiedDate=now, CreationDate=now
-        )
+        typed.occurrences.append(made)
+        name = "Qto_CoveringBaseQuantities"
+        found = covering_quantities(component, insulation)
+        self.describe(made, f"{component.id}/{name}", self.quantity_set(f"{component.id}/{name}", name, found))
+        self.entities.relate("IfcRelAggregates", component.id, "RelatingObject", "RelatedObjects", product, [made])
+
+    def _join(
+        self, members: dict[str, list[str]], titles: dict[str, str], of: dict[str, str], run: Sequence[str], by_id: dict[str, AnyComponent]
+    ) -> None:
+        """Put a run into the system of its name, or into one of its own."""
+        named = next((name for one in run if isinstance(name := by_id[one].extra.get(SYSTEM), str) and name), None)
+        key = f"named/{named}" if named else f"of/{run[0]}"
+        titles.setdefault(key, named or f"Run {run[0]}")
+        members.setdefault(key, []).extend(run)
+        of.update(dict.fromkeys(run, key))
+
+    def _port_axes(self, place: Any, along: Any) -> Any:
+        """Return a port's axes: z along the flow, x across it."""
+        x = (1.0, 0.0, 0.0) if abs(along[0]) < 0.7 else (0.0, 1.0, 0.0)
+        across = np.array(x) - (np.array(x) @ along) * along
+        here = [rounded(value) for value in place]
+        return self.entities.axes(here if tuple(here) != ORIGIN else ORIGIN, along.tolist(), (across / np.linalg.norm(across)).tolist())
 
 
-def predefined_type(component: AnyComponent) -> str:
-    """Return the value of IFC4's IfcPipeSegmentTypeEnum or IfcPipeFittingTypeEnum that says what a component does."""
-    match component:
-        case Pipe():
-            return "RIGIDSEGMENT"
-        case Elbow():
-            return "BEND"
-        case Tee():
-            return "JUNCTION"
-        case Reducer():
-            return "TRANSITION"
-        case Flange():
-            return "OBSTRUCTION" if component.flange_type == BLIND_FLANGE else "CONNECTOR"
-        case Cap():
-            return "OBSTRUCTION"
+def _name(component: AnyComponent) -> str:
+    """Return what people call a component: a name that it was given, else its id."""
+    said = component.extra.get("name")
+    return said if isinstance(said, str) and said else component.id
+
+
+def _size(component: AnyComponent, port: Port) -> tuple[int | None, float]:
+    """Return a port's nominal and outside diameter (mm): the component's, or what the catalogue has for a branch or a narrow end."""
+    if isinstance(component, Flange) or port.diameter == component.outer_diameter:
+        return component.dn, component.outer_diameter
+    size = pipe_size(port.diameter)
+    return (size.dn if size else None), port.diameter
+
+
+def _refuse(pipeline: Pipeline) -> None:
+    """Refuse what would make a broken file, for scripts that put a pipeline together themselves."""
+    seen: set[str] = set()
+    for index, component in enumerate(pipeline.components):
+        if component.id in seen:
+            raise InputError(pipeline.frame, f"components[{index}].id", f"'{component.id}' is used twice", "give each component its own id")
+        seen.add(component.id)
+        finite(component.id, [value for port in component.ports for value in (*port.point, *port.direction, port.diameter)])
+        if not component.length >= SHORTEST_MM:
+            raise InputError(component.id, "length", f"is {component.length:g} mm", "leave the component out or correct its points")

@@ -1,142 +1,223 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bodies of components for IFC, in the component's own axes: swept solids where these are exact, else facets.
+"""Bodies of components for IFC, in the component's own axes: swept solids, exact and small.
 
-No boolean operations: many programs compute them badly. Bolt holes are voids of the plate's profile.
+Bolt holes are voids of the plate's profile. Only where two cylinders meet, in tees, there is a boolean operation: the run less the
+branch's passage and the branch less the run, each by itself, which is what even simple programs compute. A cap's ellipse is followed by
+arcs, which more programs read than ellipses.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
+from pipeworkbench.errors import InputError
+from pipeworkbench.exports.ifc_file import ORIGIN, Entities, Point, rounded
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
-from pipeworkbench.solids import Frame, local_solid
-from pipeworkbench.solids.frames import bend_angle
+from pipeworkbench.solids import Frame
+from pipeworkbench.solids.frames import bend_angle, local_point
 from pipeworkbench.solids.model import bolt_places
-from pipeworkbench.solids.outlines import Outline, bore_radius, flange_outline, neck_outline, raised_face, reducer_outline, refuse_tight_bend
+from pipeworkbench.solids.outlines import (
+    Outline,
+    bore_radius,
+    dish_height,
+    flange_outline,
+    neck_outline,
+    raised_face,
+    reducer_outline,
+    refuse_tight_bend,
+)
 
-if TYPE_CHECKING:
-    import ifcopenshell
+LENGTH_DIGITS, ANGLE_DIGITS = 3, 6  # decimals of mm and rad in which components of one type agree
+ARCS = 8  # of a quarter of an ellipse: less than a thousandth of its height off
+OVER_MM = 1.0  # by which a cutting solid reaches over what it cuts
+SWEPT, TAPERED, SOLID = "SweptSolid", "AdvancedSweptSolid", "CSG"
+ALONG_Y = (0.0, 1.0, 0.0)
 
-DEVIATION = 1e-3  # of facets from the surface, part of the outside diameter
-FACET_ANGLE = math.radians(10)  # between neighbouring facets
-SAME_VERTEX_MM = 1e-4  # facets of neighbouring faces meet in vertices closer than this
-ORIGIN = (0.0, 0.0, 0.0)
+Body = tuple[str, list[Any]]  # type of representation and items
 
 
 class Shapes:
     """Adds geometry to one IFC file."""
 
-    def __init__(self, file: ifcopenshell.file) -> None:
-        self.file = file
+    def __init__(self, entities: Entities) -> None:
+        self.entities, self.add = entities, entities.add
 
-    def add(self, kind: str, **attributes: Any) -> Any:
-        """Add an entity to the file."""
-        return self.file.create_entity(kind, **attributes)
+    def body(self, component: AnyComponent, frame: Frame) -> Body:
+        """Return a component's body; lengths are those of its type.
 
-    def body(self, component: AnyComponent, frame: Frame) -> tuple[str, list[Any]]:
-        """Return the representation type and the items of a component's body."""
+        Raises
+        ------
+        InputError
+            Where the component's dimensions make no solid; names the component.
+        """
         match component:
             case Pipe():
-                # a wall that is not known: a full profile is honest, an invented wall is not
-                return "SweptSolid", [self._extruded(self._circle_profile(component), 0.0, component.length)]
+                return SWEPT, [self.extruded(self.ring(component.outer_diameter, component.wall_thickness), component.length)]
             case Elbow():
-                refuse_tight_bend(component)
-                profile = self._circle_profile(component)
-                axis = self._axis((component.bend_radius, 0.0, 0.0))
-                solid = self.add("IfcRevolvedAreaSolid", SweptArea=profile, Position=self.axes(), Axis=axis, Angle=bend_angle(component))
-                return "SweptSolid", [solid]
+                return SWEPT, [self._bend(component)]
             case Flange():
-                return "SweptSolid", self._flange(component)
-            case Reducer() if component.reducer_type == "concentric":
-                return "SweptSolid", [self._turned(reducer_outline(component))]
-            case Reducer() | Tee() | Cap():
-                return "Tessellation", [self._facets(component, frame)]
+                return SWEPT, self._flange(component)
+            case Reducer():
+                return self._reducer(component, frame)
+            case Tee():
+                return SOLID, self._tee(component, frame)
+            case Cap():
+                return SWEPT, [self.turned(*_cap_outline(component))]
 
     def line(self, length: float) -> Any:
         """Return an axis from the origin along z."""
-        return self.add("IfcPolyline", Points=[self._point(ORIGIN), self._point((0.0, 0.0, length))])
+        return self.add("IfcPolyline", Points=(self.entities.origin, self.entities.point((0.0, 0.0, length))))
 
-    def axes(self, location: Iterable[float] = ORIGIN, axis: Iterable[float] | None = None, reference: Iterable[float] | None = None) -> Any:
-        """Return axes at a place: ``axis`` is their z, ``reference`` their x direction."""
+    def ring(self, diameter: float, wall: float | None) -> Any:
+        """Return a pipe's section; a full one where the wall is not known: that is honest, an invented wall is not."""
+        radius, wall = _length(diameter / 2), wall and _length(wall)
+        kind, rest = ("IfcCircleHollowProfileDef", {"WallThickness": wall}) if wall else ("IfcCircleProfileDef", {})
+        position = self.entities.axes_2d()
+        return self.entities.once((kind, radius, wall), lambda: self.add(kind, ProfileType="AREA", Position=position, Radius=radius, **rest))
+
+    def extruded(self, profile: Any, length: float, start: Point = ORIGIN, along: Point = (0.0, 0.0, 1.0), across: Point = (1.0, 0.0, 0.0)) -> Any:
+        """Return a profile extruded from a place, in its plane's z direction."""
+        up = self.entities.direction((0.0, 0.0, 1.0))
         return self.add(
-            "IfcAxis2Placement3D",
-            Location=self._point(location),
-            Axis=None if axis is None else self._direction(axis),
-            RefDirection=None if reference is None else self._direction(reference),
+            "IfcExtrudedAreaSolid", SweptArea=profile, Position=self.entities.axes(start, along, across), ExtrudedDirection=up, Depth=rounded(length)
         )
 
+    def turned(self, outline: Outline, arcs: Sequence[tuple[int, int, int]] = ()) -> Any:
+        """Return the solid that an outline (radius, along z) makes about the z axis; ``arcs`` are triples of its points."""
+        points = self.add("IfcCartesianPointList2D", CoordList=tuple((_length(x), _length(y)) for x, y in outline))
+        curve = self.add("IfcIndexedPolyCurve", Points=points, Segments=self._segments(len(outline), arcs), SelfIntersect=False)
+        profile = self.add("IfcArbitraryClosedProfileDef", ProfileType="AREA", OuterCurve=curve)
+        # the profile's x and y are the component's x and z
+        position = self.entities.axes(ORIGIN, (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))
+        angle = 2 * math.pi
+        return self.add("IfcRevolvedAreaSolid", SweptArea=profile, Position=position, Axis=self._axis(ORIGIN), Angle=angle)
+
+    def bent(self, profile: Any, radius: float, angle: float) -> Any:
+        """Return a profile turned about an axis along y at a distance along x."""
+        axis = self._axis((_length(radius), 0.0, 0.0))
+        position = self.entities.identity
+        return self.add("IfcRevolvedAreaSolid", SweptArea=profile, Position=position, Axis=axis, Angle=rounded(angle, ANGLE_DIGITS))
+
+    def _bend(self, elbow: Elbow) -> Any:
+        refuse_tight_bend(elbow)
+        return self.bent(self.ring(elbow.outer_diameter, elbow.wall_thickness), elbow.bend_radius, bend_angle(elbow))
+
     def _flange(self, flange: Flange) -> list[Any]:
+        outline = flange_outline(flange)  # refuses what makes no flange
         if flange.K is None or flange.L is None or flange.bolts is None:
-            return [self._turned(flange_outline(flange))]
-        flange_outline(flange)  # refuses what makes no flange
+            return [self.turned(outline)]
         bore, face = bore_radius(flange), raised_face(flange)
         voids = [self._circle(flange.L / 2, place) for place in bolt_places(flange.K, flange.bolts)]
         if bore:
             voids.append(self._circle(bore))
-        plate = self.add("IfcArbitraryProfileDefWithVoids", ProfileType="AREA", OuterCurve=self._circle(flange.D / 2), InnerCurves=voids)
+        plate = self.add("IfcArbitraryProfileDefWithVoids", ProfileType="AREA", OuterCurve=self._circle(flange.D / 2), InnerCurves=tuple(voids))
         front = face[1] if face else 0.0
-        items = [self._extruded(plate, front, flange.C - front)]
+        items = [self.extruded(plate, _length(flange.C - front), (0.0, 0.0, _length(front)))]
         if face:
-            items.append(self._turned([(bore, 0.0), (face[0], 0.0), (face[0], front), (bore, front)]))
+            wall = face[0] - bore if bore else None
+            items.append(self.extruded(self.ring(2 * face[0], wall), _length(front)))
         neck = neck_outline(flange)
-        return [*items, self._turned(neck)] if neck else items
+        return [*items, self.turned(neck)] if neck else items
 
-    def _circle_profile(self, component: Pipe | Elbow) -> Any:
-        common = {"ProfileType": "AREA", "Position": self._axes_2d((0.0, 0.0)), "Radius": component.outer_diameter / 2}
-        if component.wall_thickness is None:
-            return self.add("IfcCircleProfileDef", **common)
-        return self.add("IfcCircleHollowProfileDef", WallThickness=component.wall_thickness, **common)
-
-    def _extruded(self, profile: Any, start: float, length: float) -> Any:
-        """Return a profile extruded along z."""
-        position = self.axes((0.0, 0.0, start))
-        up = self._direction((0.0, 0.0, 1.0))
-        return self.add("IfcExtrudedAreaSolid", SweptArea=profile, Position=position, ExtrudedDirection=up, Depth=length)
-
-    def _turned(self, outline: Outline) -> Any:
-        """Return the solid that an outline (radius, along z) makes about the z axis."""
-        points = [self._point(point) for point in outline]
-        profile = self.add("IfcArbitraryClosedProfileDef", ProfileType="AREA", OuterCurve=self.add("IfcPolyline", Points=[*points, points[0]]))
-        # the profile's x and y are the component's x and z
-        position = self.axes(ORIGIN, (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))
-        return self.add("IfcRevolvedAreaSolid", SweptArea=profile, Position=position, Axis=self._axis(ORIGIN), Angle=2 * math.pi)
-
-    def _axis(self, location: Iterable[float]) -> Any:
-        """Return an axis of revolution along y, in the profile's plane."""
-        return self.add("IfcAxis1Placement", Location=self._point(location), Axis=self._direction((0.0, 1.0, 0.0)))
-
-    def _facets(self, component: AnyComponent, frame: Frame) -> Any:
-        """Return a component's solid as a closed set of triangles."""
-        vertices, triangles = local_solid(component, frame).tessellate(DEVIATION * component.outer_diameter, FACET_ANGLE)
-        # each face brings vertices of its own: a closed set shares them
-        places: dict[tuple[int, int, int], int] = {}
-        coordinates: list[tuple[float, float, float]] = []
-        shared = []
-        for vertex in vertices:
-            point = vertex.toTuple()
-            key = tuple(round(value / SAME_VERTEX_MM) for value in point)
-            if key not in places:
-                places[key] = len(coordinates) + 1  # IFC counts from 1
-                coordinates.append(point)
-            shared.append(places[key])
-        faces = [tuple(shared[corner] for corner in triangle) for triangle in triangles]
-        return self.add(
-            "IfcTriangulatedFaceSet",
-            Coordinates=self.add("IfcCartesianPointList3D", CoordList=coordinates),
-            Closed=True,
-            CoordIndex=[face for face in faces if len(set(face)) == 3],
+    def _reducer(self, reducer: Reducer, frame: Frame) -> Body:
+        if reducer.length <= 0:
+            raise InputError(reducer.id, "end", "does not lie in the direction of the axis", "correct the reducer's points")
+        if reducer.reducer_type == "concentric":
+            return SWEPT, [self.turned(reducer_outline(reducer))]
+        wide = self.ring(reducer.outer_diameter, reducer.wall_thickness)
+        wall = {} if reducer.wall_thickness is None else {"WallThickness": _length(reducer.wall_thickness)}
+        narrow = self.add(
+            wide.is_a(),
+            ProfileType="AREA",
+            Position=self.entities.axes_2d((_length(float(local_point(frame, reducer.end)[0])), 0.0)),
+            Radius=_length(reducer.end_diameter / 2),
+            **wall,
         )
+        cone = self.add(
+            "IfcExtrudedAreaSolidTapered",
+            SweptArea=wide,
+            Position=self.entities.identity,
+            ExtrudedDirection=self.entities.direction((0.0, 0.0, 1.0)),
+            Depth=_length(reducer.length),
+            EndSweptArea=narrow,
+        )
+        return TAPERED, [cone]
+
+    def _tee(self, tee: Tee, frame: Frame) -> list[Any]:
+        begin, end = (float(local_point(frame, point)[2]) for point in (tee.start, tee.end))
+        branch_end = local_point(frame, tee.branch_end)
+        reach = math.hypot(*branch_end)
+        if not begin < 0 < end:
+            raise InputError(tee.id, "intersection", "does not lie between the ends of the run", "correct the tee's points")
+        if tee.branch_diameter > tee.outer_diameter:
+            raise InputError(tee.id, "branch_diameter", f"{tee.branch_diameter:g} mm is more than the run's", "make the thicker pipe the run")
+        if branch_end[0] <= tee.outer_diameter / 2:
+            raise InputError(tee.id, "branch_end", "lies inside the run", "correct the tee's points")
+        along = tuple(rounded(value, ANGLE_DIGITS) for value in branch_end / reach)
+        branch = {"along": along, "across": ALONG_Y}
+        wall, start, length = tee.wall_thickness, (0.0, 0.0, _length(begin)), _length(end) - _length(begin)
+        run = self.extruded(self.ring(tee.outer_diameter, wall), length, start)
+        arm = self.extruded(self.ring(tee.branch_diameter, wall), _length(reach), **branch)
+        if wall is None:
+            return [self.boolean("UNION", run, arm)]
+        passage = self.extruded(self.ring(tee.branch_diameter - 2 * wall, None), _length(reach) + OVER_MM, **branch)
+        block = self.extruded(self.ring(tee.outer_diameter, None), length, start)
+        return [self.boolean("DIFFERENCE", run, passage), self.boolean("DIFFERENCE", arm, block)]
+
+    def boolean(self, operator: str, first: Any, second: Any) -> Any:
+        """Return what an operation ("UNION", "DIFFERENCE") makes of two solids."""
+        return self.add("IfcBooleanResult", Operator=operator, FirstOperand=first, SecondOperand=second)
+
+    def _segments(self, count: int, arcs: Sequence[tuple[int, int, int]]) -> tuple[Any, ...]:
+        """Return lines and arcs that close the outline; IFC counts from 1."""
+        bends = {first: (first, middle, last) for first, middle, last in arcs}
+        found: list[Any] = []
+        at = 0
+        indices: tuple[int, ...]
+        while at < count:
+            if at in bends:
+                indices, kind = bends[at], "IfcArcIndex"
+            else:
+                indices, kind = (at, at + 1), "IfcLineIndex"
+            found.append(self.entities.file.create_entity(kind, tuple(index % count + 1 for index in indices)))
+            at = indices[-1]
+        return tuple(found)
+
+    def _axis(self, location: Point) -> Any:
+        """Return an axis of revolution along y, in the profile's plane."""
+        return self.add("IfcAxis1Placement", Location=self.entities.point(location), Axis=self.entities.direction(ALONG_Y))
 
     def _circle(self, radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Any:
-        return self.add("IfcCircle", Position=self._axes_2d(centre), Radius=radius)
+        return self.add("IfcCircle", Position=self.entities.axes_2d(centre), Radius=_length(radius))
 
-    def _point(self, values: Iterable[float]) -> Any:
-        return self.add("IfcCartesianPoint", Coordinates=tuple(float(value) for value in values))
 
-    def _direction(self, values: Iterable[float]) -> Any:
-        return self.add("IfcDirection", DirectionRatios=tuple(float(value) for value in values))
+def _cap_outline(cap: Cap) -> tuple[Outline, list[tuple[int, int, int]]]:
+    """Return a cap's half section and which of its points are joined by arcs: ellipsoidal heads, the inner one smaller by the wall."""
+    height, radius, wall = dish_height(cap), cap.outer_diameter / 2, cap.wall_thickness
+    straight = cap.length - height
+    if wall is not None and wall >= height:
+        raise InputError(cap.id, "wall_thickness", f"{wall:g} mm does not fit into a head of {height:g} mm", "give less than the head's height")
+    turns = [math.pi / 2 * step / (2 * ARCS) for step in range(2 * ARCS + 1)]
+    outer = [(radius * math.cos(turn), straight + height * math.sin(turn)) for turn in turns]
+    arcs: list[tuple[int, int, int]] = []
+    outline: Outline = []
 
-    def _axes_2d(self, location: tuple[float, float]) -> Any:
-        return self.add("IfcAxis2Placement2D", Location=self._point(location))
+    def follow(points: Outline) -> None:
+        arcs.extend((len(outline) + step, len(outline) + step + 1, len(outline) + step + 2) for step in range(0, 2 * ARCS, 2))
+        outline.extend(points)
+
+    if straight > 10**-LENGTH_DIGITS:
+        outline.append((radius, 0.0))
+    follow(outer)
+    if wall is None:
+        return [*outline, (0.0, 0.0)], arcs
+    follow([((radius - wall) * math.cos(turn), straight + (height - wall) * math.sin(turn)) for turn in reversed(turns)])
+    if straight > 10**-LENGTH_DIGITS:
+        outline.append((radius - wall, 0.0))
+    return outline, arcs
+
+
+def _length(value: float) -> float:
+    return rounded(value, LENGTH_DIGITS)

@@ -14,6 +14,15 @@ COLOURS: dict[type[AnyComponent], tuple[float, float, float]] = {
     Reducer: (0.66, 0.61, 0.50),
     Cap: (0.60, 0.52, 0.58),
 }
+INSULATION_COLOUR = (0.85, 0.82, 0.72)
+DISPLAY_COLOURS: dict[type[AnyComponent], str] = {
+    Pipe: "blue grey",
+    Elbow: "light blue",
+    Flange: "dark grey",
+    Tee: "grey green",
+    Reducer: "beige",
+    Cap: "mauve",
+}
 
 
 def size_of(component: AnyComponent) -> str:

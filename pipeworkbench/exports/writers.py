@@ -18,17 +18,18 @@ LONGEST_NAME = 200  # bytes; file systems take 255, and the temporary name besid
 
 @dataclass(frozen=True)
 class Result:
-    """What there is to write: a pipeline, the stations whose photographs show it, and the language of the report."""
+    """What there is to write: a pipeline, the stations whose photographs show it, the language of the report, the schema of IFC."""
 
     pipeline: Pipeline
     stations: tuple[Station, ...] = field(default=())
     language: str = "en"
+    ifc_schema: ifc.Schema = "IFC4"
 
 
 WRITERS: dict[str, Callable[[Result, Path], None]] = {
     ".json": lambda result, path: result.pipeline.write(path),
     ".csv": lambda result, path: tables.write_csv(result.pipeline, path),
-    ".ifc": lambda result, path: ifc.write_ifc(result.pipeline, path),
+    ".ifc": lambda result, path: ifc.write_ifc(result.pipeline, path, ifc.IfcOptions(schema=result.ifc_schema)),
     ".step": lambda result, path: step.write_step(result.pipeline, path),
     ".fcstd": lambda result, path: fcstd.write_fcstd(result.pipeline, path, result.stations),
     ".png": lambda result, path: pictures.write_picture(result.pipeline, result.stations, path),

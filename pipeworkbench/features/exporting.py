@@ -6,12 +6,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pipeworkbench.features.document import pipeline_of, stations_in
 from pipeworkbench.features.station import station_of
 from pipeworkbench.pipeline import Pipeline
 from pipeworkbench.recon.station import Station
+
+if TYPE_CHECKING:
+    from pipeworkbench.exports.ifc import Schema
 
 SHOWS_PHOTOGRAPHS = (".png", ".html")
 
@@ -45,7 +48,7 @@ FORMATS = (
 class ExportTask:
     """What is to be written; gathered from a document, written without it.
 
-    ``photographs`` False leaves them out of the report, whose ``title`` and ``language`` are given.
+    ``photographs`` False leaves them out of the report, whose ``title`` and ``language`` are given; ``ifc_schema`` is that of IFC.
     """
 
     pipeline: Pipeline
@@ -53,6 +56,7 @@ class ExportTask:
     title: str = ""
     language: str = "en"
     photographs: bool = True
+    ifc_schema: Schema = "IFC4"
 
     def write(self, path: Path) -> None:
         """Write the file, whole or not at all.
@@ -71,7 +75,7 @@ class ExportTask:
         if path.suffix.lower() == ".html":
             write_report(self.pipeline, path, self.stations, language=self.language, title=self.title or None, photographs=self.photographs)
         else:
-            write(Result(self.pipeline, self.stations), path)
+            write(Result(self.pipeline, self.stations, ifc_schema=self.ifc_schema), path)
 
 
 def export_task(
@@ -82,6 +86,7 @@ def export_task(
     title: str = "",
     language: str = "en",
     photographs: bool = True,
+    ifc_schema: Schema = "IFC4",
 ) -> ExportTask:
     """Gather from a document what a file of this ending needs.
 
@@ -94,9 +99,17 @@ def export_task(
     # what shows no photographs can be written when they are elsewhere
     needed = ending.lower() in SHOWS_PHOTOGRAPHS and (photographs or ending.lower() == ".png")
     shown = [obj for obj in stations_in(document) if obj.StationName in pipeline.stations] if needed else ()
-    return ExportTask(pipeline, tuple(station_of(obj) for obj in shown), title or document.Label, language, photographs)
+    return ExportTask(pipeline, tuple(station_of(obj) for obj in shown), title or document.Label, language, photographs, ifc_schema)
 
 
-def export_document(document: Any, path: Path, objects: Sequence[Any] | None = None, *, language: str = "en", photographs: bool = True) -> None:
+def export_document(
+    document: Any,
+    path: Path,
+    objects: Sequence[Any] | None = None,
+    *,
+    language: str = "en",
+    photographs: bool = True,
+    ifc_schema: Schema = "IFC4",
+) -> None:
     """Write a document's components (or those among ``objects``) in the format of the path's ending; errors are those of both steps."""
-    export_task(document, path.suffix, objects, language=language, photographs=photographs).write(path)
+    export_task(document, path.suffix, objects, language=language, photographs=photographs, ifc_schema=ifc_schema).write(path)

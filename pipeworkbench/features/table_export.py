@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""FreeCAD's File > Export: selected components as a table; FreeCAD calls ``export`` for the type that Init.py adds."""
+"""FreeCAD's File > Export: selected components as a table or IFC; FreeCAD calls ``export`` for the types that Init.py adds."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def graph_of(components: Sequence[AnyComponent], joints: Sequence[Joint] | None 
     open_ends = tuple((c.id, n) for c in components for n in range(len(c.ports)) if (c.id, n) not in taken)
     return PipelineGraph(
         joints,
-        _runs(components, joints),
+        runs_of(components, joints),
         tuple(c.id for c in components if isinstance(c, Tee)),
         open_ends,
         _warnings(components, joints, open_ends, settings),
@@ -110,7 +110,7 @@ def _joint(components: Sequence[AnyComponent], ports: Ends, a: int, b: int) -> J
     return Joint(a=components[row].id, a_port=port, b=components[other_row].id, b_port=other_port)  # type: ignore[arg-type]  # 0, 1 or 2
 
 
-def _runs(components: Sequence[AnyComponent], joints: Sequence[Joint]) -> tuple[tuple[str, ...], ...]:
+def runs_of(components: Sequence[AnyComponent], joints: Sequence[Joint]) -> tuple[tuple[str, ...], ...]:
     """Return the components that follow each other, tees left out: they are where runs meet."""
     next_to: dict[str, list[str]] = {c.id: [] for c in components if not isinstance(c, Tee)}
     for joint in joints:
