@@ -35,7 +35,7 @@ class Format:
 
 # marked for translation where they are shown
 FORMATS = (
-    Format(".ifc", "IFC4", "For BIM: pipe segments and fittings with their dimensions and accuracy"),
+    Format(".ifc", "IFC", "For BIM: pipe segments and fittings with their dimensions and accuracy"),
     Format(".step", "STEP solids", "For CAD: named solids, coloured by kind"),
     Format(".html", "Report", "For people: one file with dimensions, accuracy, charts and photographs"),
     Format(".csv", "Table", "For spreadsheets: a line per component"),

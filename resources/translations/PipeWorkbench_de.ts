@@ -1084,6 +1084,10 @@
             <translation>Wie die Ausgleichung Durchmesser und Biegeradien der Normen behandelt</translation>
         </message>
         <message>
+            <source>IFC4 is what most programs read</source>
+            <translation>IFC4 lesen die meisten Programme</translation>
+        </message>
+        <message>
             <source>Import a station</source>
             <translation>Einen Standpunkt importieren</translation>
         </message>
@@ -1734,6 +1738,10 @@
         <message>
             <source>Use</source>
             <translation>Nutzung</translation>
+        </message>
+        <message>
+            <source>Version</source>
+            <translation>Version</translation>
         </message>
         <message>
             <source>Warnings</source>

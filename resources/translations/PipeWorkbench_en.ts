@@ -1032,6 +1032,10 @@
             <translation>How the adjustment treats diameters and bend radii of the standards</translation>
         </message>
         <message>
+            <source>IFC4 is what most programs read</source>
+            <translation>IFC4 is what most programs read</translation>
+        </message>
+        <message>
             <source>Import a station</source>
             <translation>Import a station</translation>
         </message>
@@ -1650,6 +1654,10 @@
         <message>
             <source>Use</source>
             <translation>Use</translation>
+        </message>
+        <message>
+            <source>Version</source>
+            <translation>Version</translation>
         </message>
         <message>
             <source>Warnings</source>

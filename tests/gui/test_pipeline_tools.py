@@ -398,6 +398,20 @@ def test_exporting_writes_what_is_selected_in_the_chosen_format(document, workbe
     assert saved_files[-1] == tmp_path / "pipes.csv", "the guide checks its last step off by it"
 
 
+def test_ifc_is_written_in_the_chosen_version(document, workbench, tmp_path):
+    fill(document, pipework("A"))
+    press("Export")
+    pump()
+    panel = open_panel()
+    panel.format.setCurrentIndex([one.ending for one in panel.formats].index(".ifc"))
+    assert child(QtWidgets.QComboBox, "ifcSchema").isVisible()
+    child(QtWidgets.QComboBox, "ifcSchema").setCurrentIndex(1)
+    child(QtWidgets.QLineEdit, "path").setText(str(tmp_path / "pipes.ifc"))
+    QTest.mouseClick(standard_button(BUTTONS.Ok), LEFT)
+    assert wait_until(lambda: not panel.is_open)
+    assert "FILE_SCHEMA(('IFC4X3_ADD2'))" in (tmp_path / "pipes.ifc").read_text(encoding="utf-8")
+
+
 def test_a_report_is_written_and_opened(measured, tmp_path, monkeypatch):
     from pipeworkbench.gui.pipeline_panels import export
 

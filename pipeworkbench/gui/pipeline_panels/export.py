@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import FreeCAD
 
@@ -19,9 +20,13 @@ from pipeworkbench.gui.selection import SelectionObserver, selected_components
 from pipeworkbench.gui.translation import tr
 from pipeworkbench.gui.widgets import beside, button, choice, group, switch, text_line, words
 
+if TYPE_CHECKING:
+    from pipeworkbench.exports.ifc import Schema
+
 LANGUAGES = (("en", "English"), ("de", "Deutsch"))
+IFC_SCHEMAS: tuple[tuple[Schema, str], ...] = (("IFC4", "IFC4"), ("IFC4X3_ADD2", "IFC 4.3"))
 ALL, SELECTED = range(2)
-REPORT = ".html"
+REPORT, IFC = ".html", ".ifc"
 
 
 class ExportPanel(Panel):
@@ -62,6 +67,12 @@ class ExportPanel(Panel):
         self.opened = switch("opened", tr("Open it afterwards"), tr("In the browser"), on=True)
         options.addRow(self.opened)
         form.addRow(self.options)
+        self.ifc_options = QtWidgets.QWidget()
+        ifc_options = QtWidgets.QFormLayout(self.ifc_options)
+        ifc_options.setContentsMargins(0, 0, 0, 0)
+        self.schema = choice("ifcSchema", [name for _, name in IFC_SCHEMAS], tr("IFC4 is what most programs read"))
+        ifc_options.addRow(tr("Version"), self.schema)
+        form.addRow(self.ifc_options)
         self.path = text_line("path", tr("A file that is there is replaced"))
         browse = button("browse", "...", tr("Choose folder and name"), self.guard(self._browse))
         form.addRow(tr("File"), beside(self.path, browse))
@@ -83,6 +94,7 @@ class ExportPanel(Panel):
         chosen = self._chosen()
         self.explanation.setText(tr(chosen.explanation))
         self.options.setVisible(chosen.ending == REPORT)
+        self.ifc_options.setVisible(chosen.ending == IFC)
         if self.path.text().strip():
             self.path.setText(str(Path(self.path.text().strip()).with_suffix(chosen.ending)))
 
@@ -110,6 +122,7 @@ class ExportPanel(Panel):
             title=self.report_title.text().strip(),
             language=language,
             photographs=self.photographs.isChecked(),
+            ifc_schema=IFC_SCHEMAS[self.schema.currentIndex()][0],
         )
         self.compute(lambda progress: _written(task, path, progress))
         saved_files.append(path)
