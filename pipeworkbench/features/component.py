@@ -21,11 +21,12 @@ from pipeworkbench.features.base import HIDDEN, READ_ONLY, Feature, Property, is
 from pipeworkbench.features.carrying import Carrier, Shape, holding, may_carry
 from pipeworkbench.features.joints import End, Joined, joined_by, joint_properties, joints_of, link_changed
 from pipeworkbench.features.preferences import start_with_preferred_catalogue
-from pipeworkbench.pipeline import SCHEMA, AnyComponent, Matrix, Pipeline, moved
+from pipeworkbench.pipeline import SCHEMA, AnyComponent, Matrix, Pipe, Pipeline, moved
 from pipeworkbench.solids import IDENTITY, Frame, brep_text, frame_of, local_solid
 
 NONE = "none"  # of enumerations
 NO_PICK = -1
+PIPE_SEGMENT, PIPE_FITTING = "Pipe Segment", "Pipe Fitting"  # as FreeCAD's lists of IFC's classes have them
 SAME = 1e-3  # what a coordinate (mm) or angle (deg) may differ from the measured one and still be it
 SAME_DIRECTION = 1e-7
 DIRECTIONS = ("axis",)
@@ -50,6 +51,7 @@ def component_properties(group: str, *own: Property, standard: str = "App::Prope
         *own,
         Property("Fixed", "App::PropertyBool", group, "Keep the component where and as it is, whatever is adjusted, measured again or joined to it"),
         Property("Standard", standard, group, "Standard of the dimensions", 0 if chosen else READ_ONLY),
+        Property("IfcType", "App::PropertyString", "IFC", "Class that FreeCAD's own BIM exporter gives it", READ_ONLY),
         Property("StandardSources", "App::PropertyString", group, "How well the standard's dimensions are sourced", READ_ONLY),
         Property("Quality", "App::PropertyFloat", "Measurement", "RMS distance to the image edges in pixels (Eq. 4)", READ_ONLY),
         Property("SigmaPosition", "App::PropertyVector", "Measurement", "Standard deviation of the middle along x, y, z in mm", READ_ONLY),
@@ -182,6 +184,7 @@ class ComponentFeature(Feature):
         """Add what is missing; the list of nominal diameters comes from the catalogue."""
         replaced = super().add_properties(obj)
         offer(obj, "NominalDiameter", _nominal_diameters(catalogue()))
+        obj.IfcType = PIPE_SEGMENT if self.kind is Pipe else PIPE_FITTING
         return replaced
 
     def bring_up_to_date(self, obj: Any) -> None:

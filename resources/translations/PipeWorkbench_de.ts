@@ -16,6 +16,10 @@
             <translation>Richtungsänderung</translation>
         </message>
         <message>
+            <source>Class that FreeCAD's own BIM exporter gives it</source>
+            <translation>Klasse, die FreeCADs eigener BIM-Export ihm gibt</translation>
+        </message>
+        <message>
             <source>Diameter D of the plate</source>
             <translation>Durchmesser D des Blatts</translation>
         </message>

@@ -16,6 +16,10 @@
             <translation>Change of direction</translation>
         </message>
         <message>
+            <source>Class that FreeCAD's own BIM exporter gives it</source>
+            <translation>Class that FreeCAD's own BIM exporter gives it</translation>
+        </message>
+        <message>
             <source>Diameter D of the plate</source>
             <translation>Diameter D of the plate</translation>
         </message>
