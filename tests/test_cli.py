@@ -681,7 +681,7 @@ def test_stations_that_stay_apart_are_written_beside_whatever_they_are_called(tm
     pipelines = [
         Pipeline.of_station(name, (Pipe(id="P1", start=(0, 0, 0), end=(0, 0, 900.0), outer_diameter=48.3),)) for name in ("A", "../B:1", "..?B 1")
     ]
-    options = argparse.Namespace(out=[tmp_path / "plant.json", tmp_path / "plant.csv"], language="en")
+    options = argparse.Namespace(out=[tmp_path / "plant.json", tmp_path / "plant.csv"], language="en", ifc_schema="IFC4")
     outputs = cli._written(options, pipelines[0], pipelines[1:], ())
     assert len(set(outputs)) == 6
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(path.name for path in outputs)
