@@ -11,7 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from window import DEADLINE_S, pump, wait_until
+from window import DEADLINE_S, open_dialog, pump, wait_until
 
 from pipeworkbench.gui.compat import QtCore, QtWidgets
 
@@ -21,14 +21,16 @@ UNANSWERED_S = DEADLINE_S + 5.0  # longer than any test waits for a dialog
 @pytest.fixture(autouse=True)
 def no_dialog_hangs():
     """A message that nobody answers is closed after a while, and fails the test instead of stopping all of them."""
-    since, unanswered = {}, []
+    unanswered, shown, since = [], None, 0.0
 
     def look():
-        boxes = [box for box in QtWidgets.QApplication.topLevelWidgets() if isinstance(box, QtWidgets.QMessageBox) and box.isVisible()]
-        for box in boxes:
-            if time.monotonic() - since.setdefault(id(box), time.monotonic()) > UNANSWERED_S:
-                unanswered.append(box.text())
-                box.reject()
+        nonlocal shown, since
+        box = open_dialog(QtWidgets.QMessageBox)
+        if box is not shown:
+            shown, since = box, time.monotonic()
+        elif box is not None and time.monotonic() - since > UNANSWERED_S:
+            unanswered.append(box.text())
+            box.reject()
 
     timer = QtCore.QTimer()
     timer.timeout.connect(look)

@@ -20,6 +20,7 @@ from window import (
     choose_file,
     import_sample,
     later,
+    open_dialog,
     press,
     pump,
     screenshot,
@@ -57,7 +58,7 @@ def in_german(workbench):
 
 
 def progress_dialog():
-    return next((w for w in QtWidgets.QApplication.topLevelWidgets() if isinstance(w, ProgressDialog) and w.isVisible()), None)
+    return open_dialog(ProgressDialog)
 
 
 # long work

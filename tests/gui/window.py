@@ -84,15 +84,21 @@ def press(text):
     QTest.mouseClick(widget, LEFT)
 
 
+def open_dialog(kind):
+    """Return the modal dialog in front where it is of this kind, else None; PySide cannot list all windows safely while some are going."""
+    dialog = QtWidgets.QApplication.activeModalWidget()
+    return dialog if isinstance(dialog, kind) and dialog.isVisible() else None
+
+
 def when_dialog_opens(kind, act, tries=200):
     """Once a dialog of this kind is open, act on it; a dialog that never comes fails the test by leaving act undone."""
     done = []
 
     def look(left=tries):
-        dialogs = [w for w in QtWidgets.QApplication.topLevelWidgets() if isinstance(w, kind) and w.isVisible()]
-        if dialogs:
+        dialog = open_dialog(kind)
+        if dialog is not None:
             done.append(True)
-            act(dialogs[0])
+            act(dialog)
         elif left:
             later(lambda: look(left - 1))
 
