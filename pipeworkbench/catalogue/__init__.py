@@ -23,6 +23,14 @@ import contextlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from pipeworkbench.catalogue.insulation_records import (
+    InsulationDistance,
+    InsulationMaterial,
+    InsulationThickness,
+    JacketSheet,
+    JacketThickness,
+    StockThickness,
+)
 from pipeworkbench.catalogue.lookup import DIAMETER_TOLERANCE, RIM_TOLERANCE, Catalogue
 from pipeworkbench.catalogue.records import (
     FLANGE_TYPES,
@@ -47,9 +55,15 @@ __all__ = [
     "Cap",
     "Catalogue",
     "FlangeDimensions",
+    "InsulationDistance",
+    "InsulationMaterial",
+    "InsulationThickness",
+    "JacketSheet",
+    "JacketThickness",
     "PipeSize",
     "PipeWall",
     "Reducer",
+    "StockThickness",
     "Tee",
     "bends",
     "caps",

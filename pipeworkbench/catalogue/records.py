@@ -324,18 +324,6 @@ class Cap(Record):
         return _tube_problem(self.outer_diameter, None)
 
 
-# a table's kind is the beginning of its file's name
-KINDS: dict[str, type[Record]] = {
-    "pipes": PipeSize,
-    "pipe_walls": PipeWall,
-    "bends": Bend,
-    "flanges": FlangeDimensions,
-    "tees": Tee,
-    "reducers": Reducer,
-    "caps": Cap,
-}
-
-
 def _tube_problem(outer_diameter: float, wall_thickness: float | None, column: str = "outer_diameter") -> Problem | None:
     if outer_diameter < SMALLEST_DIAMETER:
         return column, f"is {outer_diameter:g}, no diameter in mm"

@@ -19,7 +19,8 @@ from collections.abc import Container, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pipeworkbench.catalogue.records import KINDS, PipeSize, Record
+from pipeworkbench.catalogue.kinds import KINDS
+from pipeworkbench.catalogue.records import PipeSize, Record
 from pipeworkbench.errors import InputError, one_line
 from pipeworkbench.files import MISSPELLING_SIMILARITY
 
