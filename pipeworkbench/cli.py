@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from pipeworkbench import __version__, cli_place
 from pipeworkbench.catalogue import using_folder
-from pipeworkbench.errors import InputError, PipeWorkbenchError, one_line
+from pipeworkbench.errors import COMMAND_LINE, InputError, PipeWorkbenchError, one_line
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 SMALLEST_MM, LARGEST_MM, NEAREST_MM = 1.0, 200_000.0, 200.0  # of ranges that make sense
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0}  # in mm
-COMMAND_LINE = "the command line"
 BASES_SHOWN = 5
 REASONS_SHOWN = 3  # in the one line that says that all picks failed
 MOST_LISTED = 6  # alternatives; as many as a pick may name (recon.picks, which is loaded late)
@@ -328,7 +327,7 @@ def _range(values: Sequence[float], key: str) -> tuple[float, float]:
     low, high = values
     if not SMALLEST_MM <= low < high <= LARGEST_MM:
         limits = f"between {SMALLEST_MM:g} and {LARGEST_MM:g} mm"
-        raise InputError("the command line", key, f"{low:g} to {high:g} is no range", f"give two lengths {limits}, the smaller first")
+        raise InputError(COMMAND_LINE, key, f"{low:g} to {high:g} is no range", f"give two lengths {limits}, the smaller first")
     return low, high
 
 

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from pipeworkbench.errors import InputError
+from pipeworkbench.errors import COMMAND_LINE, InputError
 
 if TYPE_CHECKING:
     from pipeworkbench.pipeline import Matrix
@@ -55,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     inputs = [options.input, *([options.onto] if options.onto else [])]
     check_paths(options.out, has_photographs=False, inputs=inputs)
     if options.deviations is not None and options.onto is None:
-        raise InputError("the command line", "--deviations", "compares with a model", "give one with --onto")
+        raise InputError(COMMAND_LINE, "--deviations", "compares with a model", "give one with --onto")
     if options.deviations is not None:
         check_paths([options.deviations], inputs=[*inputs, *options.out])
     pipeline = Pipeline.read(options.input)
@@ -88,10 +87,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _typed(values: list[float]) -> Matrix:
     """Return the placement (4 x 4) of a typed origin (mm) and heading (degrees)."""
-    if not np.isfinite(values).all():
-        raise InputError("the command line", "--placement", "is not finite", "give three lengths in mm and an angle in degrees")
+    if not all(map(math.isfinite, values)):
+        raise InputError(COMMAND_LINE, "--placement", "is not finite", "give three lengths in mm and an angle in degrees")
     x, y, z, heading = values
-    cosine, sine = float(np.cos(np.radians(heading))), float(np.sin(np.radians(heading)))
+    cosine, sine = math.cos(math.radians(heading)), math.sin(math.radians(heading))
     return ((cosine, -sine, 0.0, x), (sine, cosine, 0.0, y), (0.0, 0.0, 1.0, z), (0.0, 0.0, 0.0, 1.0))
 
 

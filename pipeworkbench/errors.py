@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The errors a user can mend; everything else that is raised is a defect of the program."""
 
+COMMAND_LINE = "the command line"  # the source of what was typed there
+
 
 class PipeWorkbenchError(Exception):
     """One sentence that says which file or object, what is wrong and what to do."""

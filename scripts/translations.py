@@ -6,7 +6,7 @@
 New texts appear in ``resources/translations/PipeWorkbench_*.ts`` as unfinished: translate them there, with Qt Linguist or an
 editor, and run it again. What is no longer in the sources stays as vanished, for texts come back. Python's standard library is all it needs.
 
-Texts are: ``tr("...")``; ``QT_TRANSLATE_NOOP("context", "...")``; ``menu_text``, ``tooltip`` and ``status_tip`` of commands; ``title`` of
+Texts are: ``tr("...")``; ``QT_TRANSLATE_NOOP("context", "...")``; ``menu_text`` and ``tooltip`` of commands; ``title`` of
 classes in the package's gui; ``Group("...")`` of the table of commands; tooltips of document objects' properties.
 """
 
@@ -28,7 +28,7 @@ LANGUAGES = ("de", "en")
 OWN_LANGUAGE = "en"  # the sources'
 
 CONTEXT, MENUS, PROPERTIES = "PipeWorkbench", "Workbench", "App::Property"
-COMMAND_TEXTS = ("menu_text", "tooltip", "status_tip")
+COMMAND_TEXTS = ("menu_text", "tooltip")
 PROPERTY_TOOLTIP = 3  # position among the arguments of Property
 PLACEHOLDER = re.compile(r"{[^{}]*}")
 

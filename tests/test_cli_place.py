@@ -3,6 +3,8 @@
 
 import csv
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -77,3 +79,8 @@ def test_what_does_not_fit_is_refused_in_one_line(file, tmp_path, capsys, more, 
     assert said in line
     assert line.count("\n") == 1
     assert not (tmp_path / "out.json").exists()
+
+
+def test_command_line_starts_without_numpy():
+    loaded = "import sys, pipeworkbench.cli; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", loaded], check=False).returncode == 0

@@ -22,15 +22,15 @@ class Command:
     ----------
     name : str
         FreeCAD's name of the command, which is also the context of its texts' translations.
-    menu_text, tooltip, status_tip : str
-        In English; FreeCAD translates them itself, also when the language is changed. ``status_tip`` is the tooltip where it is empty.
+    menu_text, tooltip : str
+        In English; FreeCAD translates them itself, also when the language is changed.
     icon : str
         File in resources/icons.
     accelerator : str
         Q and a letter of the command's own, one after the other, such as ``Q, I``: FreeCAD's own workbenches leave Q free.
     needs : tuple of str
         Modules beyond NumPy, SciPy and pydantic without which it can do nothing, such as ``cv2``.
-    needs_document, needs_station, needs_components : bool
+    needs_station, needs_components : bool
         What must be there for the command to be on.
     uses_preferences : bool
         Whether the packages must be there and the user's tables must fit before it runs.
@@ -39,11 +39,9 @@ class Command:
     name = ""
     menu_text = ""
     tooltip = ""
-    status_tip = ""
     icon = ""
     accelerator = ""
     needs: tuple[str, ...] = ()
-    needs_document = False
     needs_station = False
     needs_components = False
     uses_preferences = True
@@ -53,7 +51,7 @@ class Command:
         resources = {
             "MenuText": self.menu_text,
             "ToolTip": self.tooltip,
-            "StatusTip": self.status_tip or self.tooltip,
+            "StatusTip": self.tooltip,
             "Pixmap": str(package_folder("resources") / "icons" / self.icon),
         }
         return resources | ({"Accel": self.accelerator} if self.accelerator else {})
@@ -66,7 +64,7 @@ class Command:
             return False
         document = FreeCAD.ActiveDocument
         if document is None:
-            return not (self.needs_document or self.needs_station or self.needs_components)
+            return not (self.needs_station or self.needs_components)
         if self.needs_station and not _any_has(document, "StationFile"):
             return False
         return not self.needs_components or _any_has(document, "ComponentId")

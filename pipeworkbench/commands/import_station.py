@@ -43,14 +43,12 @@ def import_station(path: Path, document: Any = None) -> Any:
     """Add the station of a file to a document (the active one, a new one where there is none)."""
     from pipeworkbench.features.document import add_station
     from pipeworkbench.gui.translation import tr
-    from pipeworkbench.gui.view_providers import show
     from pipeworkbench.recon.station import read_station
 
     station = read_station(path)
     document = document or FreeCAD.ActiveDocument or FreeCAD.newDocument("Pipeline")
     with transaction(document, "Import Station"):
         obj = add_station(document, station)
-        show(obj)
     report = tr("Station {name}: {count} photographs imported")
     FreeCAD.Console.PrintMessage(report.format(name=station.name, count=len(station.cameras)) + "\n")
     return obj

@@ -48,12 +48,11 @@ def reconstruct_picks(obj: Any, path: Path) -> list[Any]:
     Cancelled
         Where the user cancelled it.
     """
-    from pipeworkbench.features.document import add_pipeline, connections_in
+    from pipeworkbench.features.document import add_pipeline
     from pipeworkbench.features.preferences import adjustment_settings, assemble_settings, pick_settings
     from pipeworkbench.features.station import station_of
     from pipeworkbench.gui.jobs import Progress
     from pipeworkbench.gui.translation import tr
-    from pipeworkbench.gui.view_providers import show
     from pipeworkbench.gui.worker import run_long
     from pipeworkbench.recon.picks import read_picks
     from pipeworkbench.recon.reconstruct import Reconstruction, reconstruct
@@ -68,8 +67,6 @@ def reconstruct_picks(obj: Any, path: Path) -> list[Any]:
     found = run_long(tr("Reconstructing picks"), work, document, leave=True)
     with transaction(document, "Reconstruct Picks"):
         components = add_pipeline(document, found.pipeline)
-        for made in (*components, *connections_in(document).values()):
-            show(made)
     report = tr("Station {name}: {count} components reconstructed")
     FreeCAD.Console.PrintMessage(report.format(name=station.name, count=len(components)) + "\n")
     for index, reason in found.failed_picks:

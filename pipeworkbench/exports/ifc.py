@@ -25,7 +25,7 @@ import numpy as np
 from pipeworkbench.catalogue import pipe_size
 from pipeworkbench.errors import InputError
 from pipeworkbench.exports.ifc_coverings import Insulation, covering_body, covering_quantities, insulation_of
-from pipeworkbench.exports.ifc_file import ORIGIN, Entities, digest, finite, label, rounded
+from pipeworkbench.exports.ifc_file import Entities, digest, finite, label
 from pipeworkbench.exports.ifc_network import SINK, SOURCE, Network, connection_type, network_of
 from pipeworkbench.exports.ifc_properties import AS_BUILT, Properties, Quantities, as_built_properties, port_properties, quantities, shared_sets
 from pipeworkbench.exports.ifc_shapes import Body, Shapes
@@ -295,8 +295,7 @@ class _Plant:
         """Return a port's axes: z along the flow, x across it."""
         x = (1.0, 0.0, 0.0) if abs(along[0]) < 0.7 else (0.0, 1.0, 0.0)
         across = np.array(x) - (np.array(x) @ along) * along
-        here = [rounded(value) for value in place]
-        return self.entities.axes(here if tuple(here) != ORIGIN else ORIGIN, along.tolist(), (across / np.linalg.norm(across)).tolist())
+        return self.entities.axes(place, along.tolist(), (across / np.linalg.norm(across)).tolist())
 
 
 def _name(component: AnyComponent) -> str:

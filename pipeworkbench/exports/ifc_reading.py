@@ -7,7 +7,7 @@ properties say. Segments that have neither, such as facets without properties, a
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeworkbench.errors import InputError, MissingPackageError
+from pipeworkbench.errors import InputError
+from pipeworkbench.exports.ifc_file import import_ifcopenshell
 from pipeworkbench.pipeline import AnyComponent, Pipe, Pipeline
 
 if TYPE_CHECKING:
@@ -45,11 +46,7 @@ def read_ifc_pipes(path: Path) -> IfcPipes:
     MissingPackageError
         Where ifcopenshell is not installed.
     """
-    try:
-        import ifcopenshell
-    except ImportError:
-        raise MissingPackageError("ifcopenshell", "Reading IFC", "pip install 'ifcopenshell>=0.8.4,<0.10'") from None
-
+    ifcopenshell = import_ifcopenshell("Reading IFC")
     try:
         file = ifcopenshell.open(str(path))
     except (OSError, RuntimeError, ifcopenshell.Error) as error:
@@ -57,15 +54,18 @@ def read_ifc_pipes(path: Path) -> IfcPipes:
     segments = _segments(file)
     if not segments:
         raise InputError(path, "", "holds no IfcPipeSegment", "export the model with its pipes as IfcPipeSegment")
-    return ifc_pipes(file, path.stem)
+    return _pipes_of(file, segments, path.stem)
 
 
 def ifc_pipes(file: ifcopenshell.file, name: str = "model") -> IfcPipes:
     """Return the pipes of an ifcopenshell model; the pipeline's frame gets a name."""
+    return _pipes_of(file, _segments(file), name)
+
+
+def _pipes_of(file: ifcopenshell.file, segments: Sequence[Any], name: str) -> IfcPipes:
     from ifcopenshell.util.unit import calculate_unit_scale
 
     scale = float(calculate_unit_scale(file)) * MM_PER_METRE
-    segments = _segments(file)
     pipes: list[AnyComponent] = [pipe for segment in segments if (pipe := _pipe(segment, scale)) is not None]
     return IfcPipes(Pipeline(frame=name, components=tuple(pipes)), len(segments) - len(pipes))
 

@@ -12,7 +12,6 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from pipeworkbench.errors import InputError
 from pipeworkbench.exports.ifc_file import ORIGIN, Entities, Point, rounded
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
 from pipeworkbench.solids import Frame
@@ -26,7 +25,10 @@ from pipeworkbench.solids.outlines import (
     neck_outline,
     raised_face,
     reducer_outline,
+    refuse_odd_reducer,
+    refuse_thick_wall,
     refuse_tight_bend,
+    tee_axes,
 )
 
 LENGTH_DIGITS, ANGLE_DIGITS = 3, 6  # decimals of mm and rad in which components of one type agree
@@ -122,8 +124,7 @@ class Shapes:
         return [*items, self.turned(neck)] if neck else items
 
     def _reducer(self, reducer: Reducer, frame: Frame) -> Body:
-        if reducer.length <= 0:
-            raise InputError(reducer.id, "end", "does not lie in the direction of the axis", "correct the reducer's points")
+        refuse_odd_reducer(reducer)
         if reducer.reducer_type == "concentric":
             return SWEPT, [self.turned(reducer_outline(reducer))]
         wide = self.ring(reducer.outer_diameter, reducer.wall_thickness)
@@ -146,15 +147,8 @@ class Shapes:
         return TAPERED, [cone]
 
     def _tee(self, tee: Tee, frame: Frame) -> list[Any]:
-        begin, end = (float(local_point(frame, point)[2]) for point in (tee.start, tee.end))
-        branch_end = local_point(frame, tee.branch_end)
+        begin, end, branch_end = tee_axes(tee, frame)
         reach = math.hypot(*branch_end)
-        if not begin < 0 < end:
-            raise InputError(tee.id, "intersection", "does not lie between the ends of the run", "correct the tee's points")
-        if tee.branch_diameter > tee.outer_diameter:
-            raise InputError(tee.id, "branch_diameter", f"{tee.branch_diameter:g} mm is more than the run's", "make the thicker pipe the run")
-        if branch_end[0] <= tee.outer_diameter / 2:
-            raise InputError(tee.id, "branch_end", "lies inside the run", "correct the tee's points")
         along = tuple(rounded(value, ANGLE_DIGITS) for value in branch_end / reach)
         branch = {"along": along, "across": ALONG_Y}
         wall, start, length = tee.wall_thickness, (0.0, 0.0, _length(begin)), _length(end) - _length(begin)
@@ -195,10 +189,9 @@ class Shapes:
 
 def _cap_outline(cap: Cap) -> tuple[Outline, list[tuple[int, int, int]]]:
     """Return a cap's half section and which of its points are joined by arcs: ellipsoidal heads, the inner one smaller by the wall."""
+    refuse_thick_wall(cap)
     height, radius, wall = dish_height(cap), cap.outer_diameter / 2, cap.wall_thickness
     straight = cap.length - height
-    if wall is not None and wall >= height:
-        raise InputError(cap.id, "wall_thickness", f"{wall:g} mm does not fit into a head of {height:g} mm", "give less than the head's height")
     turns = [math.pi / 2 * step / (2 * ARCS) for step in range(2 * ARCS + 1)]
     outer = [(radius * math.cos(turn), straight + height * math.sin(turn)) for turn in turns]
     arcs: list[tuple[int, int, int]] = []

@@ -18,12 +18,18 @@ LONGEST_NAME = 200  # bytes; file systems take 255, and the temporary name besid
 
 @dataclass(frozen=True)
 class Result:
-    """What there is to write: a pipeline, the stations whose photographs show it, the language of the report, the schema of IFC."""
+    """What there is to write: a pipeline, the stations whose photographs show it, and how.
+
+    ``language`` and ``title`` (the frame where it is empty) are those of the report, which ``photographs`` False leaves without them;
+    ``ifc_schema`` is that of IFC.
+    """
 
     pipeline: Pipeline
     stations: tuple[Station, ...] = field(default=())
     language: str = "en"
     ifc_schema: ifc.Schema = "IFC4"
+    title: str = ""
+    photographs: bool = True
 
 
 WRITERS: dict[str, Callable[[Result, Path], None]] = {
@@ -33,7 +39,7 @@ WRITERS: dict[str, Callable[[Result, Path], None]] = {
     ".step": lambda result, path: step.write_step(result.pipeline, path),
     ".fcstd": lambda result, path: fcstd.write_fcstd(result.pipeline, path, result.stations),
     ".png": lambda result, path: pictures.write_picture(result.pipeline, result.stations, path),
-    ".html": lambda result, path: report.write_report(result.pipeline, path, result.stations, language=result.language),
+    ".html": lambda result, path: _write_report(result, path),
 }
 
 
@@ -68,3 +74,7 @@ def check_paths(paths: Sequence[Path], *, has_photographs: bool = True, inputs: 
 def write(result: Result, path: Path) -> None:
     """Write a result in the format of the path's ending."""
     WRITERS[path.suffix.lower()](result, path)
+
+
+def _write_report(result: Result, path: Path) -> None:
+    report.write_report(result.pipeline, path, result.stations, language=result.language, title=result.title or None, photographs=result.photographs)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.features.document import components_in, connections_in, pipeline_of, replace_components, stations_in
+from pipeworkbench.features.document import components_in, frame_data, pipeline_of, replace_components, stations_in
 from pipeworkbench.features.preferences import adjustment_settings
 from pipeworkbench.features.station import station_of
 from pipeworkbench.features.transactions import transaction
@@ -52,16 +52,12 @@ class Adjusted:
 
 def frames_of(document: Any, objects: Iterable[Any] | None = None) -> dict[str, list[Any]]:
     """Return component objects by the frame they are measured in: that of their station, or of the stations it is merged with."""
-    merged: dict[str, str] = {}
-    # a merged frame after its stations' own, which may be left from before the merge
-    for frame, connections in sorted(connections_in(document).items(), key=lambda item: len(item[1].Stations)):
-        merged |= dict.fromkeys((frame, *connections.Stations), frame)
-    stations = stations_in(document)
-    only = merged.get(stations[0].StationName, stations[0].StationName) if stations else ""
+    chosen = components_in(document) if objects is None else list(objects)
+    stations = {obj.StationName for obj in chosen}
+    names = {station: frame_data(document, [station] if station else [])["frame"] for station in stations}
     frames: dict[str, list[Any]] = {}
-    for obj in components_in(document) if objects is None else objects:
-        name = obj.StationName
-        frames.setdefault(merged.get(name, name) or only, []).append(obj)
+    for obj in chosen:
+        frames.setdefault(names[obj.StationName], []).append(obj)
     return frames
 
 
@@ -102,15 +98,12 @@ def compute(
     InputError
         Where an image cannot be read or the problem has no datum.
     """
-    from pipeworkbench.recon.adjustment.changes import SUMMARY_KEY, changes, summary_of
+    from pipeworkbench.recon.adjustment.changes import changes
     from pipeworkbench.recon.together import adjusted_together
-    from pipeworkbench.recon.views import views_of
+    from pipeworkbench.recon.views import views_by_station
 
     given = task.pipeline
-    views = {}
-    for number, station in enumerate(task.stations):
-        progress(f"finding edges of station {station.name}", number, len(task.stations))
-        views[station.name] = views_of(station)
+    views = views_by_station(task.stations, progress)
     # what stays is there all the same: it hides what is behind it
     components = tuple(component if component.id in task.chosen else replace(component, fixed=True) for component in given.components)
     seen = {name: pose for name, pose in given.stations.items() if name in views}
@@ -123,7 +116,7 @@ def compute(
         components=tuple(new if new.id in task.chosen else old for new, old in zip(adjusted.components, given.components, strict=True)),
         stations=given.stations | adjusted.stations,
         sigma0=adjusted.sigma0,
-        extra=given.extra | {SUMMARY_KEY: summary_of(solution)},
+        extra=adjusted.extra,
     )
     pairs = [(old, new) for old, new in zip(given.components, result.components, strict=True) if old.id in task.chosen]
     return Adjusted(task, result, solution, changes([old for old, _ in pairs], [new for _, new in pairs]))
@@ -185,13 +178,13 @@ def _adjusted_in_place(
     import numpy as np
 
     from pipeworkbench.recon.adjust import Problem, StationViews, adjust
+    from pipeworkbench.recon.adjustment.changes import with_solution
 
     stations = tuple(StationViews(name, views[name], np.array(pose.frame_from_level)) for name, pose in problem.stations.items())
     # what was never adjusted has a place of its own from its recognition
     placed = frozenset(component.id for component in problem.components if problem.sigma0 is None and _is_measured_pipe(component))
     solution = adjust(Problem(problem.components, stations, problem.joints, placed=placed), settings, progress)
-    sigma0 = round(solution.sigma0, 4) if np.isfinite(solution.sigma0) else None
-    return replace(problem, components=solution.components, sigma0=sigma0), solution
+    return with_solution(problem, solution), solution
 
 
 def _is_measured_pipe(component: Component) -> bool:

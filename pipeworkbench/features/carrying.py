@@ -19,7 +19,7 @@ from typing import Any
 import FreeCAD
 
 from pipeworkbench.features.base import is_newer
-from pipeworkbench.features.joints import joints_of, points_of
+from pipeworkbench.features.joints import is_joined, joints_of, points_of
 from pipeworkbench.features.project import carries_joined
 
 SAME_DIAMETER = 0.02  # what diameters may differ by, relatively, and still be meant to be the same (see recon.topology)
@@ -44,7 +44,7 @@ def holding() -> Iterator[None]:
 
 def may_carry(obj: Any) -> bool:
     """Tell whether a change of a component object carries others."""
-    return not _held and next(joints_of(obj), None) is not None and carries_joined(obj.Document)
+    return not _held and is_joined(obj) and carries_joined(obj.Document)
 
 
 class Shape:

@@ -14,7 +14,7 @@ import Part
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.component import component_of
 from pipeworkbench.features.document import components_in, pipeline_of
-from pipeworkbench.pipeline import Pipe, Pipeline, Vector
+from pipeworkbench.pipeline import Pipe, Pipeline, Vector, free_id
 
 if TYPE_CHECKING:
     from pipeworkbench.recon.plant import Deviation
@@ -127,6 +127,7 @@ def designed_pipes(solids: Iterable[Any]) -> Pipeline:
         Where there is no such face.
     """
     pipes: list[Pipe] = []
+    names: set[str] = set()
     for obj in solids:
         shape = _shape_of(obj)
         own: list[Pipe] = []
@@ -134,10 +135,13 @@ def designed_pipes(solids: Iterable[Any]) -> Pipeline:
             pipe = _pipe_of_face(face, obj.Label if not own else f"{obj.Label} ({len(own) + 1})")
             if pipe is not None and not any(_is_same(pipe, other) for other in own):
                 own.append(pipe)
-        pipes += own
+        for pipe in own:
+            # labels may repeat
+            names.add(name := free_id(pipe.id, names))
+            pipes.append(replace(pipe, id=name))
     if not pipes:
         raise InputError(DESIGNED_FRAME, "", "the selected solids have no round outer faces", "select pipes, or compare with their surface")
-    return Pipeline(frame=DESIGNED_FRAME, components=_with_own_names(pipes))
+    return Pipeline(frame=DESIGNED_FRAME, components=tuple(pipes))
 
 
 def has_shape(obj: Any) -> bool:
@@ -175,19 +179,6 @@ def _is_same(one: Pipe, other: Pipe) -> bool:
         and min(math.dist(one.start, other.start), math.dist(one.start, other.end)) < SAME_AXIS_MM
         and min(math.dist(one.end, other.end), math.dist(one.end, other.start)) < SAME_AXIS_MM
     )
-
-
-def _with_own_names(pipes: Sequence[Pipe]) -> tuple[Pipe, ...]:
-    """Return pipes with an id of their own each: labels may repeat."""
-    used: set[str] = set()
-    result = []
-    for pipe in pipes:
-        name, number = pipe.id, 2
-        while name in used:
-            name, number = f"{pipe.id}.{number}", number + 1
-        used.add(name)
-        result.append(replace(pipe, id=name))
-    return tuple(result)
 
 
 def _vector(vector: Any) -> Vector:

@@ -19,7 +19,7 @@ from pipeworkbench.catalogue import Bend, Cap, Catalogue, PipeSize, Reducer, Tee
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.base import HIDDEN, READ_ONLY, Feature, Property, is_newer, is_restoring, refuse_newer
 from pipeworkbench.features.carrying import Carrier, Shape, holding, may_carry
-from pipeworkbench.features.joints import End, Joined, joined_by, joint_properties, joints_of, link_changed
+from pipeworkbench.features.joints import End, Joined, joined_by, joint_properties, link_changed
 from pipeworkbench.features.preferences import start_with_preferred_catalogue
 from pipeworkbench.pipeline import SCHEMA, AnyComponent, Matrix, Pipe, Pipeline, moved
 from pipeworkbench.solids import IDENTITY, Frame, brep_text, frame_of, local_solid
@@ -352,11 +352,6 @@ def offer(obj: Any, name: str, wanted: Iterable[str], chosen: str | None = None)
 def port(x: float = 0.0, z: float = 0.0, tilt_deg: float = 0.0) -> Any:
     """Return the frame of an end in the plane y = 0 of a component's own axes; its z axis is turned by an angle from z towards x."""
     return FreeCAD.Placement(FreeCAD.Vector(x, 0, z), FreeCAD.Rotation(FreeCAD.Vector(0, 1, 0), tilt_deg))
-
-
-def is_joined(obj: Any) -> bool:
-    """Tell whether anything is joined to a component object."""
-    return next(joints_of(obj), None) is not None
 
 
 def nominal_diameter(size: PipeSize | None) -> str:

@@ -136,24 +136,47 @@ def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline
         raise InputError(document.Label, "", "the document has no pipes or fittings", "reconstruct some picks first")
     components = tuple(component_of(obj) for obj in chosen)
     measured_by = {component.station for component in components if component.station}
-    connections = connections_in(document).values()
-    for obj in connections:
+    for obj in connections_in(document).values():
         refuse_newer(obj)
-    merged = [data for data in map(data_of, connections) if measured_by <= {data["frame"], *data["stations"]}]
-    if merged:
-        data = merged[0]
-    elif len(measured_by) > 1:
-        raise InputError(document.Label, "", "the components come from several stations that are not merged", "select those of one station")
-    else:
-        stations = stations_in(document)
-        frame = next(iter(measured_by), stations[0].StationName if stations else document.Label)
-        data = Pipeline.of_station(frame, ()).to_dict()
+    data = frame_data(document, measured_by)
     bare = Pipeline(frame=data["frame"], components=components).to_dict()["components"]
     joints = linked_joints(chosen, data["joints"])
     georeference = georeference_of(document)
     if georeference is not None and data.get("georeference", georeference)["frame"] == georeference["frame"]:
         data |= {"georeference": georeference}
     return Pipeline.from_dict(data | {"components": bare, "joints": joints}, source=document.Label)
+
+
+def known_frames(document: Any) -> list[dict[str, Any]]:
+    """Return the frames of which a document knows more than their components, as files have them, those of more stations first.
+
+    So a merged frame comes before its stations' own, which may be left from before the merge.
+    """
+    known = [data for data in map(data_of, connections_in(document).values()) if {"frame", "stations"} <= data.keys()]
+    return sorted(known, key=lambda data: -len(data["stations"]))
+
+
+def frame_data(document: Any, stations: Collection[str]) -> dict[str, Any]:
+    """Return the frame in which lies what these stations measured, as a file has it, without its components.
+
+    What nobody measured lies in the first station's.
+
+    Raises
+    ------
+    InputError
+        Where the stations are not merged.
+    """
+    known, imported = known_frames(document), stations_in(document)
+    first = imported[0].StationName if imported else document.Label
+
+    def holding(names: Collection[str]) -> dict[str, Any] | None:
+        return next((data for data in known if set(names) <= {data["frame"], *data["stations"]}), None)
+
+    # without any station that was imported there may be a frame all the same
+    found = holding(stations or [first]) or holding(stations)
+    if found is None and len(stations) > 1:
+        raise InputError(document.Label, "", "the components come from several stations that are not merged", "select those of one station")
+    return found or Pipeline.of_station(next(iter(stations), first), ()).to_dict()
 
 
 @dataclass(frozen=True)
@@ -192,11 +215,9 @@ class StationFrame:
 def frame_of(station_object: Any) -> StationFrame:
     """Return the frame of a station object's components: as merged, else its own."""
     station = station_object.StationName
-    shared = [data for data in map(data_of, connections_in(station_object.Document).values()) if station in data.get("stations", {})]
-    if not shared:
+    data = next((data for data in known_frames(station_object.Document) if station in data["stations"]), None)
+    if data is None:
         return StationFrame(station, {station: Pipeline.of_station(station, ()).stations[station].frame_from_level}, station)
-    # a merged frame has more stations than the station's own
-    data = max(shared, key=lambda data: len(data["stations"]))
     return StationFrame(data["frame"], {name: _as_matrix(pose["frame_from_level"]) for name, pose in data["stations"].items()}, station)
 
 

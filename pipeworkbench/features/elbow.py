@@ -10,8 +10,8 @@ import FreeCAD
 
 from pipeworkbench.catalogue import STANDARD_BENDS, PipeSize, bends
 from pipeworkbench.features.base import Property
-from pipeworkbench.features.component import NONE, ComponentFeature, Fields, component_properties, is_joined, offer, port
-from pipeworkbench.features.joints import End
+from pipeworkbench.features.component import NONE, ComponentFeature, Fields, component_properties, offer, port
+from pipeworkbench.features.joints import End, is_joined
 from pipeworkbench.pipeline import Elbow
 from pipeworkbench.solids import Frame
 

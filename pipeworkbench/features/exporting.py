@@ -68,14 +68,10 @@ class ExportTask:
         MissingPackageError
             Where a format needs a package that is not installed.
         """
-        from pipeworkbench.exports.report import write_report
         from pipeworkbench.exports.writers import Result, check_paths, write
 
         check_paths([path], has_photographs=bool(self.stations))
-        if path.suffix.lower() == ".html":
-            write_report(self.pipeline, path, self.stations, language=self.language, title=self.title or None, photographs=self.photographs)
-        else:
-            write(Result(self.pipeline, self.stations, ifc_schema=self.ifc_schema), path)
+        write(Result(self.pipeline, self.stations, self.language, self.ifc_schema, self.title, self.photographs), path)
 
 
 def export_task(

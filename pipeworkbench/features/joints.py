@@ -55,6 +55,11 @@ def joints_of(obj: Any) -> Iterator[Joined]:
             yield Joined(number, other, other_end)
 
 
+def is_joined(obj: Any) -> bool:
+    """Tell whether anything is joined to a component object."""
+    return next(joints_of(obj), None) is not None
+
+
 def points_of(obj: Any) -> list[Any]:
     """Return where the ends of a component object are in the document's frame (FreeCAD.Vector)."""
     placement = obj.Proxy.placement(obj)

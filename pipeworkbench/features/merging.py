@@ -102,17 +102,13 @@ def compute(
     """
     from pipeworkbench.recon.register import register
     from pipeworkbench.recon.together import adjusted_together
-    from pipeworkbench.recon.views import views_of
+    from pipeworkbench.recon.views import views_by_station
 
     progress("looking for what the stations share", 0, 0)
     found = register(task.pipelines, assignments=assignments, chosen=chosen)
     pipeline, solution = found.pipeline, None
     if adjustment is not None and len(pipeline.stations) > 1 and found.pairs:
-        views = {}
-        for number, station in enumerate(task.stations):
-            progress(f"finding edges of station {station.name}", number, len(task.stations))
-            if station.name in pipeline.stations:
-                views[station.name] = views_of(station)
+        views = views_by_station([station for station in task.stations if station.name in pipeline.stations], progress)
         if pipeline.stations.keys() - views.keys():
             missing = ", ".join(sorted(pipeline.stations.keys() - views.keys()))
             raise InputError("the adjustment", missing, "its photographs are not in the document", "import the station, or merge without adjustment")

@@ -6,6 +6,7 @@ The values live in FreeCAD's parameters; whoever needs one calls `preferences`. 
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 from collections.abc import Callable, Iterable
@@ -140,6 +141,12 @@ _told: set[str] = set()  # what was wrong in the parameters and has been said
 
 def preferences() -> Preferences:
     """Return what the user has set; what does not fit is told once in the report view, and the default is used in its place."""
+    return _parsed(tuple(FreeCAD.ParamGet(PREFERENCES).GetContents() or ()))
+
+
+@functools.lru_cache(maxsize=1)
+def _parsed(_contents: tuple[Any, ...]) -> Preferences:
+    """Return the settings that the parameters hold now: those that ``_contents`` lists, and are not read anew until they change."""
     parameters = FreeCAD.ParamGet(PREFERENCES)
     values: dict[str, Any] = {}
     for item in fields(Preferences):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -105,12 +105,13 @@ def station_of(obj: Any) -> Station:
         Where photographs have moved or the calibration no longer fits, or a newer version of the workbench made the object.
     """
     refuse_newer(obj)
-    calibration, missing = calibration_of(obj), missing_images(obj)
+    calibration, files = calibration_of(obj), image_files(obj)
+    missing = _missing(obj, files)
     if missing:
         names = ", ".join(path.name for path in missing)
         raise InputError(obj.Label, "Images", f"{names} cannot be found (last seen in {missing[0].parent})", FIND_THEM)
     source = station_file(obj) or Path(obj.KnownFiles[0])
-    return station_from(calibration, source, {name: path for name, path in image_files(obj).items() if path is not None})
+    return station_from(calibration, source, {name: path for name, path in files.items() if path is not None})
 
 
 def cameras_of(obj: Any) -> tuple[Camera, ...]:
@@ -157,8 +158,7 @@ def image_files(obj: Any) -> dict[str, Path | None]:
 
 def missing_images(obj: Any) -> list[Path]:
     """Return the photographs of a station object that cannot be found, each where it was seen last."""
-    known = [Path(name) for name in obj.KnownFiles[1:]] or [Path(name) for name in obj.Images]
-    return [path for path, found in zip(known, image_files(obj).values(), strict=True) if found is None]
+    return _missing(obj, image_files(obj))
 
 
 def relocate(obj: Any, place: Path) -> list[Path]:
@@ -259,6 +259,12 @@ def name_relative_to(obj: Any, document_file: Path) -> None:
     for name, value in (("KnownFiles", files), ("StationFile", named[0]), ("Images", named[1:])):
         if getattr(obj, name) != value:
             setattr(obj, name, value)
+
+
+def _missing(obj: Any, files: Mapping[str, Path | None]) -> list[Path]:
+    """Return those of the photographs' files that were not found, each where it was seen last."""
+    known = [Path(name) for name in obj.KnownFiles[1:]] or [Path(name) for name in obj.Images]
+    return [path for path, found in zip(known, files.values(), strict=True) if found is None]
 
 
 def _remember_files(obj: Any, files: list[Path]) -> None:

@@ -7,7 +7,7 @@ import itertools
 from typing import Any, NamedTuple
 
 from pipeworkbench.exports.kinds import COLOURS
-from pipeworkbench.features.preferences import preferences
+from pipeworkbench.features.preferences import Preferences, preferences
 
 Colour = tuple[float, float, float]  # red, green, blue from 0 to 1
 
@@ -44,7 +44,7 @@ def colour_of(obj: Any, mode: str) -> Colour:
     """
     chosen = preferences()
     if mode == "quality":
-        return quality_colour(obj.Quality if obj.Quality >= 0 else None)
+        return quality_colour(obj.Quality if obj.Quality >= 0 else None, chosen)
     if mode == "loa":
         return LEVELS.get(obj.LevelOfAccuracy, ("", chosen.unknown_colour))[1]
     return chosen.approximate_colour if getattr(obj, "Approximate", False) else chosen.kind_colour(obj.Proxy.kind.kind)
@@ -70,9 +70,8 @@ def legend_of(mode: str) -> list[LegendEntry]:
     ]
 
 
-def quality_colour(quality: float | None) -> Colour:
+def quality_colour(quality: float | None, chosen: Preferences) -> Colour:
     """Return the colour of an RMS distance to the image edges in px (the paper's Eq. 4), None where it was not measured."""
-    chosen = preferences()
     return chosen.unknown_colour if quality is None else next(colour for limit, colour in chosen.quality_scale if limit >= quality)
 
 

@@ -17,26 +17,18 @@ except ImportError:  # FreeCAD 0.20
     QtWidgets = QtGui
 
 Signal = QtCore.Signal
-Slot = QtCore.Slot
-# Qt 6 moved these from the widgets to QtGui
+# Qt 6 moved it from the widgets to QtGui
 QAction = getattr(QtGui, "QAction", None) or QtWidgets.QAction
-QActionGroup = getattr(QtGui, "QActionGroup", None) or QtWidgets.QActionGroup
-QShortcut = getattr(QtGui, "QShortcut", None) or QtWidgets.QShortcut
-QUndoStack = getattr(QtGui, "QUndoStack", None) or QtWidgets.QUndoStack
 
 __all__ = [
     "QAction",
-    "QActionGroup",
-    "QShortcut",
     "QtCore",
     "QtGui",
     "QtWidgets",
     "Signal",
-    "Slot",
     "device_pixel_ratio",
     "event_position",
     "execute",
-    "global_position",
     "is_alive",
     "qt_module",
     "qt_version",
@@ -76,11 +68,6 @@ def event_position(event: Any) -> QtCore.QPointF:
         return event.position()
     # PySide2's mouse events
     return event.localPos() if hasattr(event, "localPos") else event.posF()
-
-
-def global_position(event: Any) -> QtCore.QPoint:
-    """Return where a mouse or wheel event happened on the screen."""
-    return event.globalPosition().toPoint() if hasattr(event, "globalPosition") else event.globalPos()
 
 
 def device_pixel_ratio(widget: Any) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 import FreeCADGui
 
 from pipeworkbench.features.document import components_in
+from pipeworkbench.features.kinds import is_component
 
 
 def selected_objects(document: Any) -> list[Any]:
@@ -18,8 +19,7 @@ def selected_objects(document: Any) -> list[Any]:
 
 def selected_components(document: Any) -> list[Any]:
     """Return the selected components of a document."""
-    components = components_in(document)
-    return [obj for obj in selected_objects(document) if obj in components]
+    return [obj for obj in selected_objects(document) if is_component(obj)]
 
 
 def select_components(document: Any, ids: Iterable[str]) -> None:

@@ -212,15 +212,17 @@ def colour_by(document: Any, mode: str) -> list[LegendEntry]:
         raise InputError(document.Label, "colours", f"cannot say '{mode}'", f"choose one of {', '.join(COLOUR_MODES)}")
     project = project_of(document) or make_project(document)
     if project.ColourMode != mode:
-        project.ColourMode = mode
-    for obj in components_in(document):
-        _colour(obj, mode)
+        project.ColourMode = mode  # the project's view colours them
+    else:
+        recolour(document)
     return legend_of(mode)
 
 
 def recolour(document: Any) -> None:
     """Give all components of a document the colours that the user has set."""
-    colour_by(document, colour_mode(document))
+    mode = colour_mode(document)
+    for obj in components_in(document):
+        _colour(obj, mode)
 
 
 def select(document: Any, names: Iterable[str], *, add: bool = False) -> None:

@@ -28,6 +28,7 @@ from pipeworkbench.recon.adjustment.solution import AdjustedStation, ContourFit,
 from pipeworkbench.recon.adjustment.state import State
 from pipeworkbench.recon.adjustment.variances import assessed, estimated, gross_contours, near, wrongly_left_out
 from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.vectors import dot
 
 __all__ = [
     "AdjustedStation",
@@ -209,7 +210,7 @@ def _weighed(linear: Linearisation, variances: Variances, settings: AdjustmentSe
 def _moved(one: Linearisation, other: Linearisation) -> float:
     """Return by how much (px) contours moved across themselves between two linearisations of the same samples."""
     parts = zip(one.samples, other.samples, strict=True)
-    across = [np.abs(np.einsum("ni,ni->n", there.position - here.position, here.normal)) for here, there in parts]
+    across = [np.abs(dot(there.position - here.position, here.normal)) for here, there in parts]
     return max((float(np.nanmax(some, initial=0.0)) for some in across), default=0.0)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from pipeworkbench.pipeline import Pipe, Pipeline
 from pipeworkbench.recon.accuracy import level_of_accuracy
 from pipeworkbench.recon.adjust import AdjustmentSettings, Problem, Solution, StationViews, adjust
-from pipeworkbench.recon.adjustment.changes import SUMMARY_KEY, summary_of
+from pipeworkbench.recon.adjustment.changes import with_solution
 from pipeworkbench.recon.assemble import AssembleSettings, Completed, complete
 from pipeworkbench.recon.candidates import PipeCandidate
 from pipeworkbench.recon.flanges import detect as detect_flanges
@@ -192,14 +192,8 @@ def _adjusted(
         return pipeline, found.warnings, None
     placed = frozenset(component.id for component in found.components if isinstance(component, Pipe))
     solution = adjust(Problem(found.components, (StationViews(station.name, views),), found.joints, placed=placed), settings)
-    pipeline = replace(
-        pipeline,
-        components=solution.components,
-        sigma0=round(solution.sigma0, 4) if np.isfinite(solution.sigma0) else None,
-        extra=pipeline.extra | {SUMMARY_KEY: summary_of(solution)},
-    )
     weak = (f"{one.component}: {one.reason}" for one in solution.weak)
-    return pipeline, (*found.warnings, *solution.warnings, *weak), solution
+    return with_solution(pipeline, solution), (*found.warnings, *solution.warnings, *weak), solution
 
 
 def as_component(candidate: PipeCandidate, pick: PipePick | None, station: str, number: int = 0) -> Pipe:

@@ -67,14 +67,6 @@ class Searched:
     series: Array
 
 
-def find_cylinders(views: Sequence[View], pick: PipePick, tangents: Sequence[PipeTangents], settings: PickSettings) -> list[Found]:
-    """Return the cylinders that fit a pick and all images best, at most ``settings.kept``, best first.
-
-    ``tangents`` are the planes that the pick could mean, the most likely first.
-    """
-    return best_found(views, pick, tangents[0], search_cylinders(views, pick, tangents, settings), settings)
-
-
 def search_cylinders(
     views: Sequence[View],
     pick: PipePick,
@@ -84,6 +76,7 @@ def search_cylinders(
 ) -> Searched | None:
     """Return all cylinders that a pick could be, None where there are none; how many are ``kept`` does not matter to them.
 
+    ``tangents`` are the planes that the pick could mean, the most likely first.
     ``seen`` is called with the one that looks best before the sizes of the standard are tried.
     """
     clicked = tangents[0]

@@ -15,7 +15,7 @@ import numpy as np
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import Pipeline, StationPose
 from pipeworkbench.recon.adjust import AdjustedStation, AdjustmentSettings, Problem, Solution, StationViews, adjust
-from pipeworkbench.recon.adjustment.changes import SUMMARY_KEY, summary_of
+from pipeworkbench.recon.adjustment.changes import with_solution
 from pipeworkbench.recon.pick_settings import PickSettings
 from pipeworkbench.recon.picks import Picks
 from pipeworkbench.recon.reconstruct import ADJUSTED, Reconstruction, reconstruct, reconstruct_without_picks
@@ -150,9 +150,7 @@ def adjusted_together(
     )
     solution = adjust(Problem(pipeline.components, stations, pipeline.joints), settings, progress)
     poses = {name: _with_pose(pose, solution.stations[name]) for name, pose in pipeline.stations.items()}
-    sigma0 = round(solution.sigma0, 4) if np.isfinite(solution.sigma0) else None
-    extra = pipeline.extra | {SUMMARY_KEY: summary_of(solution)}
-    return replace(pipeline, components=solution.components, stations=poses, sigma0=sigma0, extra=extra), solution
+    return replace(with_solution(pipeline, solution), stations=poses), solution
 
 
 def _with_pose(pose: StationPose, adjusted: AdjustedStation) -> StationPose:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -82,3 +83,18 @@ def views_of(station: Station, settings: EdgeSettings | None = None) -> tuple[Vi
     # two at a time: OpenCV and NumPy release the interpreter lock, and memory stays low
     with ThreadPoolExecutor(thread_count(2)) as pool:
         return tuple(pool.map(view, range(len(station.cameras))))
+
+
+def views_by_station(stations: Sequence[Station], progress: Callable[[str, int, int], None]) -> dict[str, tuple[View, ...]]:
+    """Return the views of stations by their names; ``progress`` is told which station, how many are done and how many there are.
+
+    Raises
+    ------
+    InputError
+        Where an image cannot be read or has another size than the calibration.
+    """
+    views = {}
+    for number, station in enumerate(stations):
+        progress(f"finding edges of station {station.name}", number, len(stations))
+        views[station.name] = views_of(station)
+    return views

@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any
 from pipeworkbench.errors import InputError, MissingPackageError
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
 from pipeworkbench.solids.frames import Frame, bend_angle, frame_of, local_point
-from pipeworkbench.solids.outlines import Outline, dish_height, flange_outline, reducer_outline, refuse_tight_bend
+from pipeworkbench.solids.outlines import (
+    Outline,
+    dish_height,
+    flange_outline,
+    reducer_outline,
+    refuse_odd_reducer,
+    refuse_thick_wall,
+    refuse_tight_bend,
+    tee_axes,
+)
 
 if TYPE_CHECKING:
     import cadquery
@@ -181,15 +190,8 @@ def _flange(flange: Flange) -> Any:
 def _tee(tee: Tee, frame: Frame) -> Any:
     """Return run and branch as one body: where the branch is set on, the run cuts it just as well."""
     cq = _modeller()
-    begin, end = (float(local_point(frame, point)[2]) for point in (tee.start, tee.end))
-    branch_end = local_point(frame, tee.branch_end)
+    begin, end, branch_end = tee_axes(tee, frame)
     reach, direction = math.hypot(*branch_end), cq.Vector(*branch_end.tolist())
-    if not begin < 0 < end:
-        raise InputError(tee.id, "intersection", "does not lie between the ends of the run", "correct the tee's points")
-    if tee.branch_diameter > tee.outer_diameter:
-        raise InputError(tee.id, "branch_diameter", f"{tee.branch_diameter:g} mm is more than the run's", "make the thicker pipe the run")
-    if branch_end[0] <= tee.outer_diameter / 2:
-        raise InputError(tee.id, "branch_end", "lies inside the run", "correct the tee's points")
 
     def body(inwards: float) -> Any:
         run = cq.Solid.makeCylinder(tee.outer_diameter / 2 - inwards, end - begin, cq.Vector(0, 0, begin))
@@ -201,8 +203,7 @@ def _tee(tee: Tee, frame: Frame) -> Any:
 
 
 def _reducer(reducer: Reducer, frame: Frame) -> Any:
-    if reducer.length <= 0:
-        raise InputError(reducer.id, "end", "does not lie in the direction of the axis", "correct the reducer's points")
+    refuse_odd_reducer(reducer)
     offset = float(local_point(frame, reducer.end)[0])
     if reducer.reducer_type == "concentric":
         return _turned(reducer_outline(reducer))
@@ -221,12 +222,11 @@ def _reducer(reducer: Reducer, frame: Frame) -> Any:
 
 def _cap(cap: Cap) -> Any:
     """Return a cylinder with an ellipsoidal head; the inner head's half axes are shorter than the outer one's by the wall."""
+    refuse_thick_wall(cap)
     cq = _modeller()
     height, radius = dish_height(cap), cap.outer_diameter / 2
     straight = cap.length - height
     wall = cap.wall_thickness
-    if wall is not None and wall >= height:
-        raise InputError(cap.id, "wall_thickness", f"{wall:g} mm does not fit into a head of {height:g} mm", "give less than the head's height")
 
     def arc(inwards: float) -> Any:
         # in the x, z plane between the top and the widest point; about -y the same arc makes a face that STEP loses

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Half sections of components that a lathe could turn: points (radius, along the axis) in mm, counted from the frame's origin."""
+"""Half sections of components that a lathe could turn: points (radius, along the axis) in mm, counted from the frame's origin.
+
+Beside them is what every modeller must ask of the other components first: whether their dimensions make a solid at all.
+"""
 
 from __future__ import annotations
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.pipeline import BLIND_FLANGE, Cap, Elbow, Flange, Reducer
+from pipeworkbench.pipeline import BLIND_FLANGE, Cap, Elbow, Flange, Reducer, Tee
+from pipeworkbench.recon.camera import Array
 from pipeworkbench.recon.shapes import DISH
+from pipeworkbench.solids.frames import Frame, local_point
 
 SHORTEST_MM = 1e-6
 
@@ -68,9 +73,41 @@ def refuse_tight_bend(elbow: Elbow) -> None:
         raise InputError(elbow.id, "bend_radius", f"{elbow.bend_radius:g} mm is not more than the pipe's radius", "correct the bend radius")
 
 
+def refuse_odd_reducer(reducer: Reducer) -> None:
+    """Raise InputError where a reducer does not lead in the direction of its axis."""
+    if reducer.length <= 0:
+        raise InputError(reducer.id, "end", "does not lie in the direction of the axis", "correct the reducer's points")
+
+
+def tee_axes(tee: Tee, frame: Frame) -> tuple[float, float, Array]:
+    """Return where a tee's run begins and ends along z, and where its branch ends (3,), in its own axes (mm).
+
+    Raises
+    ------
+    InputError
+        Where they make no tee.
+    """
+    begin, end = (float(local_point(frame, point)[2]) for point in (tee.start, tee.end))
+    branch_end = local_point(frame, tee.branch_end)
+    if not begin < 0 < end:
+        raise InputError(tee.id, "intersection", "does not lie between the ends of the run", "correct the tee's points")
+    if tee.branch_diameter > tee.outer_diameter:
+        raise InputError(tee.id, "branch_diameter", f"{tee.branch_diameter:g} mm is more than the run's", "make the thicker pipe the run")
+    if branch_end[0] <= tee.outer_diameter / 2:
+        raise InputError(tee.id, "branch_end", "lies inside the run", "correct the tee's points")
+    return begin, end, branch_end
+
+
 def dish_height(cap: Cap) -> float:
     """Return the height of a cap's ellipsoidal head in mm."""
     return min(DISH * cap.outer_diameter, cap.length)
+
+
+def refuse_thick_wall(cap: Cap) -> None:
+    """Raise InputError where a cap's wall does not fit into its head."""
+    wall, height = cap.wall_thickness, dish_height(cap)
+    if wall is not None and wall >= height:
+        raise InputError(cap.id, "wall_thickness", f"{wall:g} mm does not fit into a head of {height:g} mm", "give less than the head's height")
 
 
 def _without_repetition(points: Outline) -> Outline:

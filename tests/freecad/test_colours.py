@@ -12,7 +12,7 @@ from pipeworkbench.features.document import add_pipeline
 from pipeworkbench.features.preferences import preferences
 from pipeworkbench.features.project import COLOUR_MODES, project_of
 from pipeworkbench.gui.colours import colour_of, legend_of
-from pipeworkbench.gui.view_providers import colour_by, colour_mode
+from pipeworkbench.gui.view_providers import colour_by, colour_mode, recolour
 from pipeworkbench.pipeline import Pipeline
 
 EVERYTHING = Pipeline.read(Path(__file__).resolve().parent.parent / "data" / "one_of_everything.json")
@@ -35,6 +35,13 @@ def test_mode_is_remembered_in_the_document(objects, document):
     legend = colour_by(document, "quality")
     assert (project_of(document).ColourMode, colour_mode(document)) == ("quality", "quality")
     assert legend == legend_of("quality")
+
+
+def test_other_colours_of_the_user_add_nothing_to_a_document(objects, document):
+    before = [obj.Name for obj in document.Objects]
+    recolour(document)
+    assert project_of(document) is None
+    assert [obj.Name for obj in document.Objects] == before
 
 
 def test_unknown_mode_is_refused(document):

@@ -16,9 +16,10 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.features.adjusting import adjust_document, frames_of, tasks_of
 from pipeworkbench.features.comparing import compare_with_ifc, compare_with_solids, distances_to_surface
 from pipeworkbench.features.component import component_of
-from pipeworkbench.features.document import add_pipeline, add_station, components_in, connections_in, pipeline_of
+from pipeworkbench.features.document import add_pipeline, add_station, components_in, connections_in, frame_of, pipeline_of, stations_in
+from pipeworkbench.features.kinds import add_component
 from pipeworkbench.features.merging import merge_stations
-from pipeworkbench.pipeline import Pipe, Pipeline, moved
+from pipeworkbench.pipeline import Pipe, Pipeline, StationPose, moved
 from pipeworkbench.recon.picks import read_picks
 from pipeworkbench.recon.reconstruct import reconstruct
 from pipeworkbench.recon.station import read_station
@@ -147,6 +148,23 @@ def test_merging_brings_everything_into_the_first_frame_in_one_step(document):
     document.undo()
     assert geometry(document) == before
     assert sorted(frames_of(document)) == ["A", "B"]
+
+
+def test_frame_that_is_left_from_before_a_merge_counts_nowhere(document):
+    add_station(document, read_station(SAMPLE))
+    (station,) = stations_in(document)
+    pipe = Pipe(id="A-P", start=(0.0, 0.0, 0.0), end=(0.0, 0.0, 400.0), outer_diameter=114.3, station="A")
+    add_pipeline(document, replace(Pipeline.of_station("A", (pipe,)), sigma0=0.5))
+    merged = pipework("B", IDENTITY)
+    poses = merged.stations | {"A": StationPose(frame_from_level=turned(35, (500.0, -2000.0, 40.0)))}
+    add_pipeline(document, replace(merged, components=(*merged.components, pipe), stations=poses, sigma0=0.7))
+    assert list(connections_in(document)) == ["A", "B"]
+    unmeasured = add_component(document, replace(pipe, id="by hand", station=None))
+    measured = [obj for obj in components_in(document) if obj.ComponentId == "A-P"]
+    for chosen in (measured, [*measured, unmeasured], [unmeasured], None):
+        assert (pipeline_of(document, chosen).frame, pipeline_of(document, chosen).sigma0) == ("B", 0.7)
+        assert list(frames_of(document, chosen)) == ["B"]
+    assert frame_of(station).name == "B"
 
 
 def test_stations_that_share_nothing_stay_and_say_why(document):

@@ -54,6 +54,17 @@ def document():
 
 
 @pytest.fixture
+def closed_panels():
+    """No test leaves a panel to the next one."""
+    from pipeworkbench.gui.panel import open_panel
+
+    yield
+    if open_panel() is not None:
+        open_panel().close()
+    pump(20)
+
+
+@pytest.fixture
 def workbench():
     """The Pipe Workbench, active."""
     FreeCADGui.activateWorkbench("PipeWorkbench")

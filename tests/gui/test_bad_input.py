@@ -37,18 +37,11 @@ from pipeworkbench.gui.panel import open_panel
 from pipeworkbench.gui.photos.windows import photo_window
 from pipeworkbench.pipeline import Pipe, Pipeline
 
+pytestmark = pytest.mark.usefixtures("closed_panels")
+
 CONTROL = QtCore.Qt.KeyboardModifier.ControlModifier
 EVERYTHING = ROOT / "tests" / "data" / "one_of_everything.json"
 PIPE = Pipe(id="P1", start=(0.0, 4000.0, 0.0), end=(0.0, 4000.0, 500.0), outer_diameter=48.3, wall_thickness=2.6, dn=40, station="A")
-
-
-@pytest.fixture(autouse=True)
-def closed_panels():
-    """No test leaves a panel to the next one."""
-    yield
-    if open_panel() is not None:
-        open_panel().close()
-    pump(20)
 
 
 def message_of(panel):

@@ -495,6 +495,21 @@ def test_contours_follow_the_document_through_undo_and_redo(pipeline):
     assert wait_until(lambda: drawn_at(above) is None)
 
 
+def test_contours_are_not_computed_anew_for_what_changes_no_component(pipeline, monkeypatch):
+    from pipeworkbench.gui.photos import contours
+
+    computed, compute = [], contours.component_curves
+    monkeypatch.setattr(contours, "component_curves", lambda station, placed: computed.append(placed) or compute(station, placed))
+    pipe = components_in(pipeline.station_object.Document)[0]
+    pipe.Label = "the upper one"
+    assert wait_until(lambda: pipeline.contours.label_of(pipe.Name) == "the upper one")
+    assert computed == []
+    pipe.OutsideDiameter = 88.9
+    pipe.Document.recompute()
+    assert wait_until(lambda: pipeline.contours._shown[0].component.outer_diameter == 88.9)
+    assert computed
+
+
 def test_clicking_a_contour_selects_the_object_and_back(pipeline):
     document = pipeline.station_object.Document
     heard = Heard(pipeline)

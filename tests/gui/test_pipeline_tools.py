@@ -21,6 +21,8 @@ from pipeworkbench.recon.picks import read_picks
 from pipeworkbench.recon.reconstruct import reconstruct
 from pipeworkbench.recon.station import read_station
 
+pytestmark = pytest.mark.usefixtures("closed_panels")
+
 BUTTONS = QtWidgets.QDialogButtonBox.StandardButton
 KEYS = QtCore.Qt.Key
 
@@ -53,15 +55,6 @@ def measured(document, workbench, recognised):
     add_station(document, read_station(SAMPLE))
     fill(document, recognised)
     return document
-
-
-@pytest.fixture(autouse=True)
-def closed_panels():
-    """No test leaves a panel to the next one."""
-    yield
-    if open_panel() is not None:
-        open_panel().close()
-    pump(20)
 
 
 def geometry(document):

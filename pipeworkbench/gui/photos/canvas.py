@@ -19,7 +19,6 @@ from pipeworkbench.gui.photos.layers import Layer
 from pipeworkbench.gui.photos.loupe import draw_loupe
 from pipeworkbench.gui.photos.picture import Frame, Picture, Tone
 from pipeworkbench.gui.translation import tr
-from pipeworkbench.recon.snapping import SnappedEdge
 
 GROUND = "#2b2d30"
 CAPTION = "#e8eaed"
@@ -65,7 +64,6 @@ class PhotoCanvas(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         self.tone = Tone()
         self.picture: Picture | None = None
         self.loupe = False
-        self.snapped: SnappedEdge | None = None
         self.pans_with_left = False
         self.pointer: QtCore.QPointF | None = None
         self._layers = layers

@@ -14,6 +14,7 @@ from pipeworkbench.errors import PipeWorkbenchError
 from pipeworkbench.features.component import component_of
 from pipeworkbench.features.document import StationFrame, frame_of
 from pipeworkbench.features.kinds import is_component
+from pipeworkbench.features.preferences import preferences
 from pipeworkbench.gui.colours import hex_of, quality_colour
 from pipeworkbench.gui.compat import QtCore
 from pipeworkbench.gui.photos.background import Background
@@ -127,7 +128,7 @@ class ComponentContours:
             self._draw_hovered()
 
     def _follow(self) -> None:
-        """Compute the contours anew, in the background, one after the other."""
+        """Compute the contours anew, in the background, one after the other; only where a component is another one than is shown."""
         if self._running is not None:
             self._outdated = True
             return
@@ -146,9 +147,14 @@ class ComponentContours:
                 self._update.request()
 
         def give_up(_error: Exception) -> None:
+            named.clear()
+            placed.clear()
             show([])
 
-        self._running = self._background.submit(lambda: component_curves(self._station, placed), show, give_up)
+        if placed != [shown.component for shown in self._shown]:
+            self._running = self._background.submit(lambda: component_curves(self._station, placed), show, give_up)
+        elif named != [(shown.name, shown.label) for shown in self._shown]:
+            show([shown.curves for shown in self._shown])
 
     def _visible_objects(self, frame: StationFrame) -> list[Any]:
         """Return the objects of a frame that are to be shown; what they are is asked only of those that have changed."""
@@ -166,13 +172,14 @@ class ComponentContours:
     def draw(self) -> None:
         """Draw the contours, those of selected components above the others."""
         selected = {obj.Name for obj in selected_objects(self._station_object.Document)}
+        colours = self._colours()
         for camera in (camera.name for camera in self._station.cameras):
             drawings: list[Drawing] = []
             by_colour: dict[str, tuple[list[Array], list[Array]]] = {}
             chosen: list[Array] = []
-            for shown in self._shown:
+            for shown, colour in zip(self._shown, colours, strict=True):
                 curves = shown.curves[camera]
-                seen, hidden = by_colour.setdefault(self._colour(shown), ([], []))
+                seen, hidden = by_colour.setdefault(colour, ([], []))
                 hidden += curves.hidden
                 (chosen if shown.name in selected else seen).extend(curves.seen)
             for colour, (seen, hidden) in by_colour.items():
@@ -190,10 +197,12 @@ class ComponentContours:
             for camera, curves in shown.curves.items():
                 self._highlight.set_polylines(camera, curves.seen, HOVERED_COLOUR, width=WIDTH)
 
-    def _colour(self, shown: Shown) -> str:
+    def _colours(self) -> list[str]:
+        """Return the colours of what is shown."""
         if self._colouring is Colouring.KIND:
-            return KIND_COLOURS[type(shown.component)]
-        return hex_of(quality_colour(shown.component.quality))
+            return [KIND_COLOURS[type(shown.component)] for shown in self._shown]
+        chosen = preferences()
+        return [hex_of(quality_colour(shown.component.quality, chosen)) for shown in self._shown]
 
 
 def _component_or_none(obj: Any) -> AnyComponent | None:

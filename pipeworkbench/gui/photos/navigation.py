@@ -32,16 +32,6 @@ class Navigation:
             canvas.panned.connect(lambda way, canvas=canvas: self.pan(canvas, way))
             canvas.resized.connect(self._resized)
 
-    @property
-    def scale(self) -> float:
-        """Screen pixels per pixel of the photographs."""
-        return self._canvases[0].scale
-
-    @property
-    def linked(self) -> bool:
-        """Whether all photographs show the same object point in their middles."""
-        return self._linked
-
     def set_linked(self, linked: bool, leader: PhotoCanvas) -> None:  # noqa: FBT001  # as Qt's setters
         """Let all photographs show what one of them shows."""
         self._linked = linked

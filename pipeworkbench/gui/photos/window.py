@@ -57,7 +57,6 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
     stepped_back = Signal()
     digit_pressed = Signal(int)
     component_clicked = Signal(str, bool)  # object's name, whether it is added to the selection
-    edges_ready = Signal(str)  # camera
     closed = Signal()
 
     station: Station
@@ -318,11 +317,10 @@ class PhotoWindow(QtWidgets.QWidget):  # type: ignore[misc]  # Qt has no types
         FreeCAD.Console.PrintError(f"{error}\n")
         self.status.work.setText("")
 
-    def _show_view(self, index: int, _view: View) -> None:
+    def _show_view(self, _index: int, _view: View) -> None:
         if self.views is not None:
             self.status.work.setText("")
         self._fill_layers()
-        self.edges_ready.emit(self.canvases[index].camera)
 
     def _find_missing(self) -> None:
         """Ask where the photographs are and load them."""

@@ -10,6 +10,7 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.features.adjusting import state_of
 from pipeworkbench.features.comparing import Comparison, compare_with_model, compare_with_solids, distances_to_surface, has_shape
 from pipeworkbench.features.document import components_in, pipeline_of
+from pipeworkbench.features.kinds import is_component
 from pipeworkbench.gui.colours import BAD, GOOD, POOR, Colour, hex_of
 from pipeworkbench.gui.compat import QtWidgets
 from pipeworkbench.gui.dialogs import ask_open, ask_save
@@ -96,8 +97,7 @@ class DeviationsPanel(Panel):
 
     def _follow_selection(self) -> None:
         """Take selected solids for the design; selecting components afterwards does not forget them."""
-        components = components_in(self.document)
-        solids = [obj for obj in selected_objects(self.document) if obj not in components and has_shape(obj)]
+        solids = [obj for obj in selected_objects(self.document) if not is_component(obj) and has_shape(obj)]
         if solids:
             self._solids = [obj.Name for obj in solids]
         labels = [obj.Label for obj in self._designed()]

@@ -105,7 +105,7 @@ class FindPipesTool(ProposalTool):
 
     def _tick_above(self) -> None:
         self.proposals.tick_above(self._slider.value())
-        self.show_all()
+        self.show_list()
 
 
 def _is_same(pipe: Pipe, other: Pipe) -> bool:

@@ -35,9 +35,6 @@ def put_into_document(station_object: Any, components: Sequence[AnyComponent], j
 
     Whoever calls it opens the transaction.
     """
-    from pipeworkbench.gui.view_providers import show
-
-    document = station_object.Document
     frame = frame_of(station_object)
     pipeline = Pipeline(
         frame=frame.name,
@@ -45,12 +42,7 @@ def put_into_document(station_object: Any, components: Sequence[AnyComponent], j
         joints=tuple(joints),
         stations={name: StationPose(frame_from_level=pose) for name, pose in frame.poses.items()},
     )
-    known = {obj.Name for obj in document.Objects}
-    objects = add_pipeline(document, pipeline)
-    for obj in document.Objects:
-        if obj.Name not in known:
-            show(obj)
-    return objects
+    return add_pipeline(station_object.Document, pipeline)
 
 
 def joints_among(

@@ -57,7 +57,6 @@ class Request:
     """A pick whose answer is wanted; what comes back for an older one is no longer of interest."""
 
     pick: PipePick
-    number: int
 
 
 class PipeMeasurement:
@@ -91,7 +90,6 @@ class PipeMeasurement:
         self.answers: list[PipeCandidate] = []
         self._entry: dict[str, Any] | None = None
         self._request: Request | None = None
-        self._count = 0
         self._is_measuring = False
         self._guess: Pipe | None = None
         self._tried: Pipe | None = None
@@ -305,8 +303,7 @@ class PipeMeasurement:
             self.reason = picks.refused[0].reason
             self._keep_first_click()
             return
-        self._count += 1
-        self._request = Request(picks.pipes[0], self._count)
+        self._request = Request(picks.pipes[0])
         self._is_measuring = True
         self.reason = ""
 

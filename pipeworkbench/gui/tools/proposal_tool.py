@@ -15,7 +15,8 @@ from pipeworkbench.gui.tools.proposals import Proposal, Proposals, applied, prev
 from pipeworkbench.gui.tools.tool import Tool
 from pipeworkbench.gui.translation import QT_TRANSLATE_NOOP, tr
 from pipeworkbench.gui.widgets import beside, button, words
-from pipeworkbench.recon.image_curves import contours_in, distance_to_polyline
+from pipeworkbench.recon.camera import Array
+from pipeworkbench.recon.image_curves import distance_to_polyline
 
 HIT_PX = 25.0  # of the photograph, from a click to the ghost that is meant
 
@@ -33,6 +34,7 @@ class ProposalTool(Tool):
         self.proposals = Proposals()
         self._accepted: list[tuple[Proposal, str]] = []  # with the ids of their components
         self._still: str | None = None  # camera in whose photograph the proposal that is shown was clicked on
+        self._outlines: list[dict[str, list[Array]]] = []  # of the proposals, by camera
         self._make_widgets()
 
     # what subclasses override
@@ -122,8 +124,12 @@ class ProposalTool(Tool):
 
     def show_all(self) -> None:
         """Bring list, ghosts and buttons up to date."""
-        if not self.is_open:
-            return
+        if self.is_open:
+            self.show_list()
+            self.show_ghosts()
+
+    def show_list(self) -> None:
+        """Bring list and buttons up to date; the ghosts do not depend on what is ticked."""
         proposals = self.proposals
         self.table.fill([self.texts(proposal) for proposal in proposals.items], proposals.row, proposals.ticks)
         self._accept_one.setEnabled(proposals.current is not None)
@@ -135,13 +141,12 @@ class ProposalTool(Tool):
         elif proposals.items:
             self._status.setText(tr("{count} found. Click on one to choose it.").format(count=len(proposals.items)))
         self.show_choices()
-        self.show_ghosts()
 
     def show_ghosts(self) -> None:
         """Draw all proposals, the one that is shown on top."""
         proposals = self.proposals
         drawn = [(proposal.component, row == proposals.row) for row, proposal in enumerate(proposals.items)]
-        self.draw(drawn, alternatives=True, still=self._still)
+        self._outlines = self.draw(drawn, alternatives=True, still=self._still)
 
     def _accept(self, accepted: list[Proposal]) -> None:
         if not accepted:
@@ -156,8 +161,7 @@ class ProposalTool(Tool):
 
     def _row_at(self, camera: str, point: Any) -> int | None:
         """Return the row of the proposal whose outline a pixel is nearest to, None where it is far from all."""
-        components = [proposal.component for proposal in self.proposals.items]
-        outlines = [by_camera[camera] for by_camera in contours_in(self.station, components, range(len(components)))]
+        outlines = [by_camera[camera] for by_camera in self._outlines]
         distances = [min((distance_to_polyline(point, line) for line in lines), default=np.inf) for lines in outlines]
         row = int(np.argmin(distances)) if distances else -1
         if row < 0 or not outlines[row]:
@@ -192,4 +196,4 @@ class ProposalTool(Tool):
     def _ticked(self, row: int, ticked: bool) -> None:  # noqa: FBT001  # Qt's signal
         self.proposals.ticks[row] = ticked
         with self.reporting():
-            self.show_all()
+            self.show_list()

@@ -118,8 +118,10 @@ class Tool(Panel):
 
         self._task.start(lambda tell: function(window.wait_for_views(), tell), self._reported(ended), self._reported(fail), self._reported(news))
 
-    def draw(self, drawn: Sequence[Drawn], *, guess: bool = False, alternatives: bool = False, still: str | None = None) -> None:
-        """Show components in all photographs and in 3D, the chosen ones on top.
+    def draw(
+        self, drawn: Sequence[Drawn], *, guess: bool = False, alternatives: bool = False, still: str | None = None
+    ) -> list[dict[str, list[Array]]]:
+        """Show components in all photographs and in 3D, the chosen ones on top; return their contours as `contours_in` does.
 
         Parameters
         ----------
@@ -132,7 +134,7 @@ class Tool(Panel):
             Camera whose photograph was clicked in: it stays where it is, while the others are moved to where the chosen ones are.
         """
         if self.window.is_closed:
-            return
+            return []
         components = [component for component, _ in drawn]
         curves = contours_in(self.station, components, range(len(components)) if alternatives else None)
         is_chosen = [chosen for _, chosen in drawn]
@@ -152,6 +154,7 @@ class Tool(Panel):
         for component, chosen in zip(in_document(self.station_object, components), is_chosen, strict=True):
             self._ghosts.add_component(component, rgb_of(CHOSEN_COLOUR if chosen else OTHER_COLOUR), TRANSPARENCY)
         self._ghosts.show()
+        return curves
 
     def clear_drawing(self) -> None:
         """Show no proposals any more."""
@@ -196,18 +199,13 @@ class Tool(Panel):
         """Leave the photographs and views as they were."""
         mdi_area().subWindowActivated.disconnect(self._window_activated)
         self._task.cancel()
+        self.clear_drawing()
         self._ghosts.remove()
         for window in self._open_windows:
-            window.layer(LAYER).clear()
-            window.layer(CLICK_LAYER).clear()
             window.set_tool(False)
             for signal, slot in self._slots(window):
                 signal.disconnect(slot)
         self._windows.clear()
-
-    def step_back(self) -> bool:
-        """Take Esc; subclasses say whether there was a step to take back."""
-        return False
 
     # how it listens
 

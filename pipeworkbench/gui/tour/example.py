@@ -32,7 +32,6 @@ def make_example(folder: Path | None = None) -> Any:
     """
     from pipeworkbench.features.document import add_station
     from pipeworkbench.features.transactions import transaction
-    from pipeworkbench.gui.view_providers import show
     from pipeworkbench.recon.station import read_station
 
     copied = copy_sample(folder or Path(FreeCAD.getUserAppDataDir()) / "PipeWorkbench" / "example")
@@ -42,7 +41,7 @@ def make_example(folder: Path | None = None) -> Any:
         document.Label = tr("Example project")
         document.UndoMode = 1
         with transaction(document, "Import Station"):
-            show(add_station(document, station))
+            add_station(document, station)
     except BaseException:
         FreeCAD.closeDocument(document.Name)
         raise

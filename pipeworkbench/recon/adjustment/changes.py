@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from pipeworkbench.pipeline import AnyComponent, Pipeline
 from pipeworkbench.recon.adjustment.solution import Solution
 from pipeworkbench.recon.registration.landmarks import landmarks_of
+from pipeworkbench.recon.vectors import dot
 
 SUMMARY_KEY = "adjustment"  # among the extra keys of a pipeline
 MOST_TOLD = 20  # gross errors in a summary; all of a bad adjustment's help nobody
@@ -45,9 +47,9 @@ def changes(before: Sequence[AnyComponent], after: Sequence[AnyComponent]) -> tu
     one, other = (landmarks_of(Pipeline(frame="", components=tuple(components))) for components in (before, after))
     moved = other.point - one.point
     # along its axis a pipe's middle moves when an end does
-    sideways = moved - np.einsum("ni,ni->n", moved, one.axis)[:, None] * one.axis
+    sideways = moved - dot(moved, one.axis)[:, None] * one.axis
     shift = np.linalg.norm(np.where(one.is_axis[:, None], sideways, moved), axis=1)
-    cosine = np.einsum("ni,ni->n", one.axis, other.axis)
+    cosine = dot(one.axis, other.axis)
     sine = np.linalg.norm(np.cross(one.axis, other.axis), axis=1)
     rotation = np.degrees(np.arctan2(sine, np.where(one.is_axis, np.abs(cosine), cosine)))
     return tuple(Change(*row) for row in zip(before, after, shift.tolist(), rotation.tolist(), strict=True))
@@ -88,6 +90,12 @@ def summary_of(solution: Solution) -> dict[str, Any]:
         "undetermined": dict(solution.undetermined),
         "warnings": list(solution.warnings),
     }
+
+
+def with_solution(pipeline: Pipeline, solution: Solution) -> Pipeline:
+    """Return a pipeline as its adjustment left it: the components, sigma0 and the summary; its stations stay as they are."""
+    summary = summary_of(solution)
+    return replace(pipeline, components=solution.components, sigma0=summary["sigma0"], extra=pipeline.extra | {SUMMARY_KEY: summary})
 
 
 def _number(value: float, digits: int = 4) -> float | None:

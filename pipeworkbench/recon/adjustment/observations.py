@@ -23,6 +23,7 @@ from pipeworkbench.recon.bodies import Bodies
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.match import match
 from pipeworkbench.recon.shapes import Shapes
+from pipeworkbench.recon.vectors import dot
 from pipeworkbench.recon.views import View
 
 SYSTEMATIC = 3  # unknowns of a group: its common error and how it changes
@@ -123,7 +124,7 @@ def observe(
         rows = matched_edges(view, seen.position, seen.normal, samples, reach, settings)
     else:
         offset = view.edges.position[matched.edge] - seen.position if len(view.edges) else np.zeros_like(seen.position)
-        distance = np.where(matched.edge >= 0, np.einsum("ni,ni->n", offset, seen.normal), np.nan)
+        distance = np.where(matched.edge >= 0, dot(offset, seen.normal), np.nan)
         rows = replace(matched, position=seen.position, normal=seen.normal, distance=distance)
     usable = (rows.weight > 0) & np.isfinite(motion).all(axis=1) & np.isfinite(rows.distance)
     weight = np.where(usable, rows.weight, 0.0)
@@ -170,7 +171,7 @@ def matched_edges(view: View, position: Array, normal: Array, samples: Samples, 
             np.full(len(samples), -1, np.int32), position, normal, none, none, np.zeros(len(samples)), np.ones(count), np.zeros(count), nothing
         )
     first = match(edges, position, normal, reach)
-    brighter = np.where(first.found, np.einsum("ni,ni->n", edges.normal[first.edge], normal), 0.0)
+    brighter = np.where(first.found, dot(edges.normal[first.edge], normal), 0.0)
     polarity = _polarity(brighter, samples)
     again = np.flatnonzero(polarity * brighter < 0)
     edge, distance = first.edge.copy(), first.distance.copy()

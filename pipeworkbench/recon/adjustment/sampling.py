@@ -16,6 +16,7 @@ from pipeworkbench.recon.bodies import Bodies
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.contour import Contour, CurveSamples, contour_of_shapes, curves_of
 from pipeworkbench.recon.shapes import Shapes
+from pipeworkbench.recon.vectors import dot
 
 COARSE = 33  # points per curve with which its length in the image is measured
 AXIS_POINTS = 9  # of a component, with which it is decided whether an image shows it
@@ -142,7 +143,7 @@ def _sharply_bent(contour: Contour) -> NDArray[np.bool_]:
     Edges are not found well there, and what the contour does is far from linear.
     """
     bent = np.zeros(len(contour), bool)
-    turned = np.einsum("ni,ni->n", contour.normal[1:], contour.normal[:-1]) < BENT
+    turned = dot(contour.normal[1:], contour.normal[:-1]) < BENT
     turned &= contour.curve[1:] == contour.curve[:-1]
     bent[1:] |= turned
     bent[:-1] |= turned
@@ -156,9 +157,9 @@ def _beside_others(contour: Contour) -> NDArray[np.bool_]:
         pairs = cKDTree(contour.position).query_pairs(float(np.hypot(RESOLUTION_PX, LATERAL_PX)), output_type="ndarray")
         pairs = pairs[contour.curve[pairs[:, 0]] != contour.curve[pairs[:, 1]]]
         normal, offset = contour.normal[pairs[:, 0]], np.diff(contour.position[pairs], axis=1)[:, 0]
-        apart = np.abs(np.einsum("pi,pi->p", offset, normal))
+        apart = np.abs(dot(offset, normal))
         aside = np.abs(offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0])
-        alike = np.abs(np.einsum("pi,pi->p", normal, contour.normal[pairs[:, 1]])) > ALIKE
+        alike = np.abs(dot(normal, contour.normal[pairs[:, 1]])) > ALIKE
         beside[pairs[(apart <= RESOLUTION_PX) & (aside <= LATERAL_PX) & alike].ravel()] = True
     return beside
 

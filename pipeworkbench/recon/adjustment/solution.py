@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from pipeworkbench.pipeline import AnyComponent
 from pipeworkbench.recon.camera import Array, Camera
 
-NOT_DETERMINED = "not determined"
-
 
 class ContourFit(NamedTuple):
     """How one contour of a component fits one image.

@@ -15,10 +15,10 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from pipeworkbench.errors import InputError
+from pipeworkbench.errors import COMMAND_LINE, InputError
 from pipeworkbench.recon.camera import Array, Camera
 from pipeworkbench.recon.formats.photographs import find_photographs, picture_size
-from pipeworkbench.recon.formats.rig import COMMAND_LINE, Rig, View
+from pipeworkbench.recon.formats.rig import Rig, View
 from pipeworkbench.recon.station import LARGEST_RIG, Station, write_station
 
 log = logging.getLogger(__name__)

@@ -20,13 +20,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeworkbench.errors import InputError
+from pipeworkbench.errors import COMMAND_LINE, InputError
 from pipeworkbench.recon.camera import Array, OpenCVInterior
 from pipeworkbench.recon.formats.documents import read_xml
 from pipeworkbench.recon.formats.fisheye import equidistant_factor
 from pipeworkbench.recon.formats.fitting import fit_opencv
 from pipeworkbench.recon.formats.rig import (
-    COMMAND_LINE,
     METRE,
     Rig,
     View,

@@ -8,9 +8,9 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from pipeworkbench.errors import InputError
+from pipeworkbench.errors import COMMAND_LINE, InputError
 from pipeworkbench.recon.formats.documents import cannot_be_read
-from pipeworkbench.recon.formats.rig import COMMAND_LINE, Rig
+from pipeworkbench.recon.formats.rig import Rig
 
 ENDINGS = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 NAMES_SHOWN = 5  # of the photographs that are missing, in a message

@@ -11,12 +11,11 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from pipeworkbench.errors import InputError
+from pipeworkbench.errors import COMMAND_LINE, InputError
 from pipeworkbench.recon.camera import Array, OpenCVInterior
 from pipeworkbench.recon.station import ORTHONORMAL_TOLERANCE
 
 METRE = 1000.0  # mm
-COMMAND_LINE = "the command line"
 NAMES_SHOWN = 10  # of the cameras there are, in a message
 
 
