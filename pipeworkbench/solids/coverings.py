@@ -9,10 +9,11 @@ axis is counted from x towards y.
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.solids.frames import Frame
@@ -46,6 +47,46 @@ class Notch:
     end: Array
     radius: float
 
+    def moved(self, axes: Array, origin: Array) -> Notch:
+        """Return it in other axes: the rows of ``axes`` (3, 3) from ``origin`` (3,) on."""
+        return replace(self, start=axes @ (self.start - origin), end=axes @ (self.end - origin))
+
+    def holds(self, points: Array) -> NDArray[np.bool_]:
+        """Return which of points (n, 3) lie in it."""
+        length = float(np.linalg.norm(self.end - self.start))
+        axis = (self.end - self.start) / length
+        along = (points - self.start) @ axis
+        across = np.linalg.norm(points - self.start - along[:, None] * axis, axis=1)
+        inside: NDArray[np.bool_] = (across < self.radius) & (along > 0) & (along < length)
+        return inside
+
+
+@dataclass(frozen=True, eq=False)
+class BlockNotch:
+    """A block that is cut out of a covering, because ``cause`` (an obstacle) needs the room.
+
+    ``frame`` is in the covering's own axes: its origin is the block's lower corner, from which the block goes on by
+    ``size`` (3,) mm along the frame's x, y and z.
+    """
+
+    cause: str
+    frame: Frame
+    size: Array
+
+    def moved(self, axes: Array, origin: Array) -> BlockNotch:
+        """Return it in other axes: the rows of ``axes`` (3, 3) from ``origin`` (3,) on."""
+        frame = self.frame
+        return replace(self, frame=Frame(axes @ (frame.origin - origin), axes @ frame.x, axes @ frame.y, axes @ frame.z))
+
+    def holds(self, points: Array) -> NDArray[np.bool_]:
+        """Return which of points (n, 3) lie in it."""
+        local = (points - self.frame.origin) @ np.array([self.frame.x, self.frame.y, self.frame.z]).T
+        inside: NDArray[np.bool_] = np.all((local > 0) & (local < self.size), axis=1)
+        return inside
+
+
+AnyNotch = Notch | BlockNotch
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Covering:
@@ -62,7 +103,7 @@ class Covering:
     layers: tuple[Layer, ...]
     sheet: Sheet | None = None
     seam: float = 0.0
-    notches: tuple[Notch, ...] = ()
+    notches: tuple[AnyNotch, ...] = ()
 
     @property
     def boundaries(self) -> tuple[float, ...]:

@@ -7,11 +7,17 @@ import io
 import math
 from typing import TYPE_CHECKING, Any
 
-from pipeworkbench.errors import InputError, MissingPackageError
+from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
 from pipeworkbench.solids.frames import Frame, bend_angle, frame_of, local_point
+from pipeworkbench.solids.modelling import location, modeller, one_solid, turned
 from pipeworkbench.solids.outlines import (
-    Outline,
+    ACROSS_FLATS,
+    GASKET_MM,
+    HEAD_HEIGHT,
+    NUT_HEIGHT,
+    PROTRUSION,
+    bolt_diameter,
     dish_height,
     flange_outline,
     reducer_outline,
@@ -24,20 +30,6 @@ from pipeworkbench.solids.outlines import (
 if TYPE_CHECKING:
     import cadquery
 
-# bolts of EN 1092-1 as fractions of the thread's diameter d (ISO 4014, ISO 4032), rounded: they are drawn, not made
-HEAD_HEIGHT, NUT_HEIGHT, ACROSS_FLATS, PROTRUSION = 0.63, 0.85, 1.5, 0.25
-CLEARANCE_MM = ((12.0, 1.0), (26.0, 2.0), (math.inf, 3.0))  # bolt hole up to this diameter: wider than the bolt by (EN 1092-1)
-GASKET_MM = 2.0  # a common thickness, where nothing says how thick it is
-
-
-def _modeller() -> Any:
-    """Import CadQuery late: it takes seconds and only some steps need it."""
-    try:
-        import cadquery
-    except ImportError:
-        raise MissingPackageError("CadQuery", "Making solids", "pip install 'cadquery>=2.4,<2.9'") from None
-    return cadquery
-
 
 def component_solid(component: AnyComponent) -> cadquery.Solid:
     """Return a component's solid in the pipeline's frame (mm).
@@ -48,7 +40,7 @@ def component_solid(component: AnyComponent) -> cadquery.Solid:
         Where the component's dimensions make no solid; names the component.
     """
     frame = frame_of(component)
-    return local_solid(component, frame).located(_location(frame))
+    return local_solid(component, frame).located(location(frame))
 
 
 def local_solid(component: AnyComponent, frame: Frame | None = None) -> cadquery.Solid:
@@ -87,14 +79,14 @@ def straight_pipe(outer_diameter: float, wall_thickness: float | None, length: f
     """
     if not all(math.isfinite(x) and x > 0 for x in (outer_diameter, length)):
         raise InputError("pipe", "", f"diameter {outer_diameter:g} mm and length {length:g} mm make no pipe", "give positive dimensions")
-    make = _modeller().Solid.makeCylinder
+    make = modeller().Solid.makeCylinder
     body = make(outer_diameter / 2, length)
     if not wall_thickness:
         return body
     inner_radius = outer_diameter / 2 - wall_thickness
     if not (math.isfinite(wall_thickness) and wall_thickness > 0 and inner_radius > 0):
         raise InputError("pipe", "wall_thickness", f"{wall_thickness:g} mm does not fit into {outer_diameter:g} mm", "give less than the radius")
-    return _solid_of(body.cut(make(inner_radius, length)))
+    return one_solid(body.cut(make(inner_radius, length)))
 
 
 def flange_bolts(flange: Flange, grip: float | None = None) -> cadquery.Compound | None:
@@ -113,11 +105,8 @@ def flange_bolts(flange: Flange, grip: float | None = None) -> cadquery.Compound
     """
     if flange.K is None or flange.L is None or flange.bolts is None:
         return None
-    cq = _modeller()
-    hole = flange.L
-    diameter = hole - next(clearance for limit, clearance in CLEARANCE_MM if hole <= limit)
-    if diameter <= 0:
-        raise InputError(flange.id, "L", f"a hole of {hole:g} mm takes no bolt", "correct the diameter of the bolt holes")
+    cq = modeller()
+    diameter = bolt_diameter(flange)
     grip = 2 * flange.C + GASKET_MM if grip is None else grip
     back, front = flange.C, flange.C - grip
     corners = ACROSS_FLATS * diameter * 2 / math.sqrt(3)
@@ -133,7 +122,7 @@ def flange_bolts(flange: Flange, grip: float | None = None) -> cadquery.Compound
         .union(along_z(front - NUT_HEIGHT * diameter).polygon(6, corners).extrude(NUT_HEIGHT * diameter))
         .val()
     )
-    solids = [_solid_of(bolt.located(cq.Location(cq.Vector(x, y, 0)))) for x, y in bolt_places(flange.K, flange.bolts)]
+    solids = [one_solid(bolt.located(cq.Location(cq.Vector(x, y, 0)))) for x, y in bolt_places(flange.K, flange.bolts)]
     return cq.Compound.makeCompound(solids)
 
 
@@ -150,28 +139,10 @@ def brep_text(shape: cadquery.Shape) -> str:
     return buffer.getvalue().decode("ascii")
 
 
-def _location(frame: Frame) -> Any:
-    cq = _modeller()
-    return cq.Location(cq.Plane(origin=tuple(frame.origin.tolist()), xDir=tuple(frame.x.tolist()), normal=tuple(frame.z.tolist())))
-
-
-def _solid_of(shape: Any) -> Any:
-    """Return the one solid of a shape that an operation packed into a compound."""
-    solids = shape.Solids()
-    if len(solids) != 1:
-        raise InputError("solid", "", f"the dimensions give {len(solids)} pieces instead of one", "correct the dimensions")
-    return solids[0]
-
-
-def _turned(outline: Outline) -> Any:
-    """Return the solid that an outline makes about the z axis."""
-    return _modeller().Workplane("XZ").polyline(outline).close().revolve(360, (0, 0, 0), (0, 1, 0)).val()
-
-
 def _elbow(elbow: Elbow) -> Any:
     radius = elbow.outer_diameter / 2
     refuse_tight_bend(elbow)
-    section = _modeller().Workplane("XY").circle(radius)
+    section = modeller().Workplane("XY").circle(radius)
     if elbow.wall_thickness is not None:
         section = section.circle(radius - elbow.wall_thickness)
     # about an axis along +y beside the start: z turns towards x
@@ -179,17 +150,17 @@ def _elbow(elbow: Elbow) -> Any:
 
 
 def _flange(flange: Flange) -> Any:
-    body = _turned(flange_outline(flange))
+    body = turned(flange_outline(flange)).solid
     if flange.K is None or flange.L is None or flange.bolts is None:
         return body
-    cq = _modeller()
+    cq = modeller()
     holes = [cq.Solid.makeCylinder(flange.L / 2, flange.C, cq.Vector(x, y, 0)) for x, y in bolt_places(flange.K, flange.bolts)]
-    return _solid_of(body.cut(*holes))
+    return one_solid(body.cut(*holes))
 
 
 def _tee(tee: Tee, frame: Frame) -> Any:
     """Return run and branch as one body: where the branch is set on, the run cuts it just as well."""
-    cq = _modeller()
+    cq = modeller()
     begin, end, branch_end = tee_axes(tee, frame)
     reach, direction = math.hypot(*branch_end), cq.Vector(*branch_end.tolist())
 
@@ -198,16 +169,16 @@ def _tee(tee: Tee, frame: Frame) -> Any:
         return run.fuse(cq.Solid.makeCylinder(tee.branch_diameter / 2 - inwards, reach, cq.Vector(), direction)).clean()
 
     if tee.wall_thickness is None:
-        return _solid_of(body(0))
-    return _solid_of(body(0).cut(body(tee.wall_thickness)))
+        return one_solid(body(0))
+    return one_solid(body(0).cut(body(tee.wall_thickness)))
 
 
 def _reducer(reducer: Reducer, frame: Frame) -> Any:
     refuse_odd_reducer(reducer)
     offset = float(local_point(frame, reducer.end)[0])
     if reducer.reducer_type == "concentric":
-        return _turned(reducer_outline(reducer))
-    cq = _modeller()
+        return turned(reducer_outline(reducer)).solid
+    cq = modeller()
 
     def body(inwards: float) -> Any:
         up = cq.Vector(0, 0, 1)
@@ -217,13 +188,13 @@ def _reducer(reducer: Reducer, frame: Frame) -> Any:
 
     if reducer.wall_thickness is None:
         return body(0)
-    return _solid_of(body(0).cut(body(reducer.wall_thickness)))
+    return one_solid(body(0).cut(body(reducer.wall_thickness)))
 
 
 def _cap(cap: Cap) -> Any:
     """Return a cylinder with an ellipsoidal head; the inner head's half axes are shorter than the outer one's by the wall."""
     refuse_thick_wall(cap)
-    cq = _modeller()
+    cq = modeller()
     height, radius = dish_height(cap), cap.outer_diameter / 2
     straight = cap.length - height
     wall = cap.wall_thickness

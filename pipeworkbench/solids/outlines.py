@@ -6,6 +6,8 @@ Beside them is what every modeller must ask of the other components first: wheth
 
 from __future__ import annotations
 
+import math
+
 from pipeworkbench.errors import InputError
 from pipeworkbench.pipeline import BLIND_FLANGE, Cap, Elbow, Flange, Reducer, Tee
 from pipeworkbench.recon.camera import Array
@@ -13,8 +15,49 @@ from pipeworkbench.recon.shapes import DISH
 from pipeworkbench.solids.frames import Frame, local_point
 
 SHORTEST_MM = 1e-6
+# bolts of EN 1092-1 as fractions of the thread's diameter d (ISO 4014, ISO 4032), rounded: they are drawn, not made
+HEAD_HEIGHT, NUT_HEIGHT, ACROSS_FLATS, PROTRUSION = 0.63, 0.85, 1.5, 0.25
+CLEARANCE_MM = ((12.0, 1.0), (26.0, 2.0), (math.inf, 3.0))  # bolt hole up to this diameter: wider than the bolt by (EN 1092-1)
+GASKET_MM = 2.0  # a common thickness, where nothing says how thick it is
 
 Outline = list[tuple[float, float]]
+
+
+def bolt_diameter(flange: Flange) -> float:
+    """Return the diameter of a flange's bolts (mm) from that of their holes; where it is not known the plate's thickness.
+
+    The bolts of EN 1092-1 are hardly ever thicker than the plate.
+
+    Raises
+    ------
+    InputError
+        Where the holes are too small for any bolt.
+    """
+    if flange.L is None:
+        return flange.C
+    hole = flange.L
+    diameter = hole - next(clearance for limit, clearance in CLEARANCE_MM if hole <= limit)
+    if diameter <= 0:
+        raise InputError(flange.id, "L", f"a hole of {hole:g} mm takes no bolt", "correct the diameter of the bolt holes")
+    return diameter
+
+
+def bolt_length(flange: Flange, grip: float | None = None) -> float:
+    """Return the length of a flange's bolts in mm with their heads: what they need to be pulled out behind the plate.
+
+    Parameters
+    ----------
+    flange : Flange
+    grip : float
+        From this flange's back to its partner's in mm; where it is not given, two equal flanges with a gasket.
+    """
+    grip = 2 * flange.C + GASKET_MM if grip is None else grip
+    return grip + (HEAD_HEIGHT + NUT_HEIGHT + PROTRUSION) * bolt_diameter(flange)
+
+
+def bolt_protrusion(flange: Flange) -> float:
+    """Return how far a nut and the bolt's end stand out behind a flange's back, in mm; a head is lower."""
+    return (NUT_HEIGHT + PROTRUSION) * bolt_diameter(flange)
 
 
 def bore_radius(flange: Flange) -> float:
