@@ -6,15 +6,16 @@ The file format is ``pipeworkbench-insulation/1``; ``docs/insulation.md`` lists 
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.files import read_json, written_whole
+from pipeworkbench.files import check, read_json, written_whole
 from pipeworkbench.insulation.heat_loss import BARE_EMISSIVITY, Layers
 from pipeworkbench.insulation.materials import DEFAULT_MATERIAL, DEFAULT_SHEET, sheet_metal
 from pipeworkbench.insulation.materials import material as material_named
@@ -79,7 +80,7 @@ class Specification:
     extra: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def uniform(cls, thickness: float, material: str = DEFAULT_MATERIAL, jacket: Sheet | Literal["DIN 4140"] | None = DIN_4140) -> Specification:
+    def uniform(cls, thickness: float, material: str = DEFAULT_MATERIAL, jacket: Sheet | str | None = DEFAULT_SHEET) -> Specification:
         """Return one layer around everything.
 
         Parameters
@@ -88,8 +89,8 @@ class Specification:
             In mm.
         material : str, optional
             Of the layer.
-        jacket : Sheet, None or "DIN 4140", optional
-            None leaves the jacket away; without being given it is of aluminium, as thick as DIN 4140 asks for.
+        jacket : Sheet, str or None, optional
+            None leaves the jacket away; of a sheet metal that is only named it is as thick as DIN 4140 asks for.
 
         Raises
         ------
@@ -99,7 +100,12 @@ class Specification:
         if not 0 < thickness < math.inf:
             raise InputError("insulation", "thickness", f"is {thickness:g} mm", "give a positive thickness in mm")
         name = material_named(material, "insulation", "material").name
-        sheet = None if jacket is None else JacketSpec(jacket.material, jacket.thickness) if isinstance(jacket, Sheet) else DEFAULT_JACKET
+        if jacket is None:
+            sheet = None
+        elif isinstance(jacket, Sheet):
+            sheet = JacketSpec(jacket.material, jacket.thickness)
+        else:
+            sheet = JacketSpec(sheet_metal(jacket, "insulation", "jacket").name)
         return cls(default=Changes(layers=(LayerSpec(name, float(thickness)),), jacket=sheet))
 
     @classmethod
@@ -124,6 +130,18 @@ class Specification:
         """Write the JSON file, whole or not at all."""
         with written_whole(path) as temporary:
             temporary.write_text(json.dumps(self.to_dict(), indent=1, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8")
+
+    def with_operation(self, known: Mapping[str, Any], source: object = "operation") -> Specification:
+        """Return the specification with some of its operation's values replaced; rules that say something of the operation stay.
+
+        Raises
+        ------
+        InputError
+            Where a value does not fit, with ``source`` and the value's name.
+        """
+        from pydantic import TypeAdapter
+
+        return dataclasses.replace(self, operation=check(TypeAdapter(Operation), dataclasses.asdict(self.operation) | dict(known), source))
 
     def treatment_of(self, component: AnyComponent, run: str | None = None) -> Treatment | None:
         """Return how a component is insulated, None where it stays bare.
