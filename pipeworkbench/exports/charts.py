@@ -6,16 +6,15 @@ from __future__ import annotations
 import io
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from pipeworkbench.errors import MissingPackageError
+from pipeworkbench.exports.texts import Texts
 from pipeworkbench.pipeline import Pipeline
 from pipeworkbench.recon.accuracy import LEVELS_OF_ACCURACY
-
-Texts = Mapping[str, Any]
 
 SIZE_INCHES = (4.2, 2.6)
 COLOUR, EDGE = "#009e73", "#ffffff"

@@ -24,11 +24,11 @@ import numpy as np
 
 from pipeworkbench.catalogue import pipe_size
 from pipeworkbench.errors import InputError
-from pipeworkbench.exports.ifc_coverings import Insulation, covering_body, covering_quantities, insulation_of
+from pipeworkbench.exports.ifc_coverings import Coverings, Planned, planned_coverings
 from pipeworkbench.exports.ifc_file import Entities, digest, finite, label
 from pipeworkbench.exports.ifc_network import SINK, SOURCE, Network, connection_type, network_of
 from pipeworkbench.exports.ifc_properties import AS_BUILT, Properties, Quantities, as_built_properties, port_properties, quantities, shared_sets
-from pipeworkbench.exports.ifc_shapes import Body, Shapes
+from pipeworkbench.exports.ifc_shapes import Shapes
 from pipeworkbench.exports.ifc_spatial import Spatial, on_map, project_key, skeleton
 from pipeworkbench.exports.ifc_types import Types
 from pipeworkbench.exports.ifc_update import carry_over
@@ -39,6 +39,8 @@ from pipeworkbench.solids import Frame, frame_of
 
 if TYPE_CHECKING:
     import ifcopenshell
+
+    from pipeworkbench.insulation.planning import Plan
 
 Schema = Literal["IFC4", "IFC4X3_ADD2"]
 SCHEMAS: tuple[Schema, ...] = ("IFC4", "IFC4X3_ADD2")
@@ -52,11 +54,13 @@ FLANGE_PORT_NAMES = ("face", "weld end")
 class IfcOptions:
     """How to write IFC: its schema, and the time that the file says it was written (seconds since 1970, UTC; now where it is not given).
 
-    The environment's ``SOURCE_DATE_EPOCH`` stands for now where it is set, as reproducible builds have it.
+    The environment's ``SOURCE_DATE_EPOCH`` stands for now where it is set, as reproducible builds have it. With a ``plan`` of the
+    pipeline's insulation that is written; without one what components say of theirs (``extra["insulation"]``).
     """
 
     schema: Schema = "IFC4"
     timestamp: int | None = None
+    plan: Plan | None = None
 
     @property
     def seconds(self) -> int:
@@ -98,17 +102,18 @@ def ifc_model(pipeline: Pipeline, name: str = "pipeline.ifc", options: IfcOption
     entities = Entities(options.schema, project, options.seconds, name)
     title = pipeline.extra.get("project")
     spatial = skeleton(entities, title if isinstance(title, str) and title else project, place)
-    _Plant(entities, spatial, local).write()
+    _Plant(entities, spatial, local, planned_coverings(options.plan, place)).write()
     return entities.file
 
 
 class _Plant:
     """Writes a pipeline's components and what belongs to them into a file that has its skeleton."""
 
-    def __init__(self, entities: Entities, spatial: Spatial, pipeline: Pipeline) -> None:
+    def __init__(self, entities: Entities, spatial: Spatial, pipeline: Pipeline, planned: Planned | None) -> None:
         self.entities, self.spatial, self.pipeline = entities, spatial, pipeline
         self.shapes = Shapes(entities)
         self.types = Types(entities, self.shapes, spatial.body)
+        self.coverings = Coverings(entities, self.shapes, self.types, planned)
         self.network: Network = network_of(pipeline.components, pipeline.joints, pipeline.frame)
         self.ports: dict[tuple[str, int], Any] = {}
         self.described: dict[tuple[str, str], tuple[Any, list[Any]]] = {}  # property and quantity sets that several things share
@@ -145,18 +150,16 @@ class _Plant:
         )
         typed.occurrences.append(product)
         as_built = f"{component.id}/{AS_BUILT}"
-        self.describe(product, as_built, self.types.property_set(as_built, AS_BUILT, as_built_properties(component, self.date)))
+        self.entities.describe(product, as_built, self.types.property_set(as_built, AS_BUILT, as_built_properties(component, self.date)))
         for name, properties in shared_sets(component, self.entities.schema).items():
             self.share(product, name, properties)
         name, found = quantities(component)
         if isinstance(component, Pipe):
-            self.describe(product, f"{component.id}/{name}", self.quantity_set(f"{component.id}/{name}", name, found))
+            self.entities.describe(product, f"{component.id}/{name}", self.entities.quantity_set(f"{component.id}/{name}", name, found))
         else:
             self.share_quantities(product, typed.key, name, found)
         self.nest_ports(component, product, frame)
-        insulation = insulation_of(component)
-        if insulation is not None:
-            self.covering(component, product, insulation, frame)
+        self.coverings.of(component, product, frame, _name(component))
         return product
 
     def place(self, parent: Any, frame: Frame) -> Any:
@@ -176,10 +179,6 @@ class _Plant:
             shapes = [add("IfcShapeRepresentation", ContextOfItems=self.spatial.axis, **axis), self.types.shape(*body)]
         return add("IfcProductDefinitionShape", Representations=tuple(shapes))
 
-    def describe(self, thing: Any, key: str, definition: Any) -> None:
-        """Relate a property or quantity set of its own to a thing."""
-        self.entities.root("IfcRelDefinesByProperties", key, RelatedObjects=(thing,), RelatingPropertyDefinition=definition)
-
     def share(self, thing: Any, name: str, properties: Properties) -> None:
         """Describe a thing with a property set that it has in common with others."""
         key = name, digest(properties)
@@ -190,13 +189,8 @@ class _Plant:
     def share_quantities(self, thing: Any, key: str, name: str, found: Quantities) -> None:
         """Describe a fitting with the quantities of its type."""
         if (name, key) not in self.described:
-            self.described[name, key] = self.quantity_set(f"{name}/{key}", name, found), []
+            self.described[name, key] = self.entities.quantity_set(f"{name}/{key}", name, found), []
         self.described[name, key][1].append(thing)
-
-    def quantity_set(self, key: str, name: str, found: Quantities) -> Any:
-        """Return a set of base quantities."""
-        made = tuple(self.entities.quantity(quantity, kind, value) for quantity, (kind, value) in found.items())
-        return self.entities.root("IfcElementQuantity", key, Name=name, MethodOfMeasurement="BaseQuantities", Quantities=made)
 
     def nest_ports(self, component: AnyComponent, product: Any, frame: Frame) -> None:
         """Add a component's ports: where its joints are, their z axes along the flow."""
@@ -261,25 +255,6 @@ class _Plant:
             # IFC 4.3 has deprecated the other relation
             kind = "IfcRelReferencedInSpatialStructure"
             self.entities.relate(kind, "systems", "RelatingStructure", "RelatedElements", self.spatial.building, made)
-
-    def covering(self, component: AnyComponent, product: Any, insulation: Insulation, frame: Frame) -> None:
-        """Add a component's insulation as a part of it."""
-        body: Body = self.types.styled(covering_body(self.shapes, component, insulation, frame), Insulation)
-        typed = self.types.covering(insulation)
-        placement = self.entities.add("IfcLocalPlacement", PlacementRelTo=product.ObjectPlacement, RelativePlacement=self.entities.identity)
-        made = self.entities.root(
-            "IfcCovering",
-            component.id,
-            Name=label(f"{_name(component)} insulation"),
-            ObjectPlacement=placement,
-            Representation=self.entities.add("IfcProductDefinitionShape", Representations=(self.types.shape(*body),)),
-            Tag=label(component.id),
-        )
-        typed.occurrences.append(made)
-        name = "Qto_CoveringBaseQuantities"
-        found = covering_quantities(component, insulation)
-        self.describe(made, f"{component.id}/{name}", self.quantity_set(f"{component.id}/{name}", name, found))
-        self.entities.relate("IfcRelAggregates", component.id, "RelatingObject", "RelatedObjects", product, [made])
 
     def _join(
         self, members: dict[str, list[str]], titles: dict[str, str], of: dict[str, str], run: Sequence[str], by_id: dict[str, AnyComponent]

@@ -7,7 +7,7 @@ import datetime as dt
 import hashlib
 import math
 import uuid
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from pipeworkbench import __version__
@@ -156,6 +156,15 @@ class Entities:
         """Return a quantity ("Length", "Area", "Weight"), shared like properties."""
         attributes = {"Name": name, f"{kind}Value": value}
         return self.once((name, kind, value), lambda: self.file.create_entity(f"IfcQuantity{kind}", **attributes))
+
+    def quantity_set(self, key: str, name: str, found: Mapping[str, tuple[str, float]]) -> Any:
+        """Return a set of base quantities: kind ("Length", "Area", ...) and value by name."""
+        made = tuple(self.quantity(quantity, kind, value) for quantity, (kind, value) in found.items())
+        return self.root("IfcElementQuantity", key, Name=name, MethodOfMeasurement="BaseQuantities", Quantities=made)
+
+    def describe(self, thing: Any, key: str, definition: Any) -> None:
+        """Relate a property or quantity set of its own to a thing."""
+        self.root("IfcRelDefinesByProperties", key, RelatedObjects=(thing,), RelatingPropertyDefinition=definition)
 
     def relate(self, kind: str, key: str, one: str, many: str, relating: Any, related: Sequence[Any], **attributes: Any) -> Any:
         """Add a relation of one thing with many."""

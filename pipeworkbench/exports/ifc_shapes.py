@@ -12,7 +12,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from pipeworkbench.exports.ifc_file import ORIGIN, Entities, Point, rounded
+from pipeworkbench.exports.ifc_file import ORIGIN, Entities, Point, X, Z, rounded
 from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
 from pipeworkbench.solids import Frame
 from pipeworkbench.solids.frames import bend_angle, local_point
@@ -79,7 +79,12 @@ class Shapes:
         position = self.entities.axes_2d()
         return self.entities.once((kind, radius, wall), lambda: self.add(kind, ProfileType="AREA", Position=position, Radius=radius, **rest))
 
-    def extruded(self, profile: Any, length: float, start: Point = ORIGIN, along: Point = (0.0, 0.0, 1.0), across: Point = (1.0, 0.0, 0.0)) -> Any:
+    def rectangle(self, width: float, depth: float) -> Any:
+        """Return a rectangle from the origin of its plane along x and y."""
+        middle = self.entities.axes_2d((width / 2, depth / 2))
+        return self.add("IfcRectangleProfileDef", ProfileType="AREA", Position=middle, XDim=_length(width), YDim=_length(depth))
+
+    def extruded(self, profile: Any, length: float, start: Point = ORIGIN, along: Point = Z, across: Point = X) -> Any:
         """Return a profile extruded from a place, in its plane's z direction."""
         up = self.entities.direction((0.0, 0.0, 1.0))
         return self.add(
@@ -96,11 +101,37 @@ class Shapes:
         angle = 2 * math.pi
         return self.add("IfcRevolvedAreaSolid", SweptArea=profile, Position=position, Axis=self._axis(ORIGIN), Angle=angle)
 
-    def bent(self, profile: Any, radius: float, angle: float) -> Any:
-        """Return a profile turned about an axis along y at a distance along x."""
+    def bent(self, profile: Any, radius: float, angle: float, start: Point = ORIGIN, along: Point = Z, across: Point = X) -> Any:
+        """Return a profile turned about an axis along y at a distance along x, from a place in its plane's z direction on."""
         axis = self._axis((_length(radius), 0.0, 0.0))
-        position = self.entities.identity
+        position = self.entities.axes(start, along, across)
         return self.add("IfcRevolvedAreaSolid", SweptArea=profile, Position=position, Axis=axis, Angle=rounded(angle, ANGLE_DIGITS))
+
+    def tapered(self, diameter: float, end_diameter: float, wall: float | None, length: float, offset: float) -> Any:
+        """Return a cone along z whose other end is offset along x, hollow where there is a wall."""
+        wide = self.ring(diameter, wall)
+        narrow = self.add(
+            wide.is_a(),
+            ProfileType="AREA",
+            Position=self.entities.axes_2d((_length(offset), 0.0)),
+            Radius=_length(end_diameter / 2),
+            **({} if wall is None else {"WallThickness": _length(wall)}),
+        )
+        return self.add(
+            "IfcExtrudedAreaSolidTapered",
+            SweptArea=wide,
+            Position=self.entities.identity,
+            ExtrudedDirection=self.entities.direction((0.0, 0.0, 1.0)),
+            Depth=_length(length),
+            EndSweptArea=narrow,
+        )
+
+    def clipped(self, solid: Any, point: Point, normal: Point) -> Any:
+        """Return a swept solid without what lies on the side of a plane's normal, which is across y."""
+        x, y, z = normal
+        plane = self.add("IfcPlane", Position=self.entities.axes(point, (x, y, z), (z, y, -x)))
+        half = self.add("IfcHalfSpaceSolid", BaseSurface=plane, AgreementFlag=False)
+        return self.add("IfcBooleanClippingResult", Operator="DIFFERENCE", FirstOperand=solid, SecondOperand=half)
 
     def _bend(self, elbow: Elbow) -> Any:
         refuse_tight_bend(elbow)
@@ -127,24 +158,8 @@ class Shapes:
         refuse_odd_reducer(reducer)
         if reducer.reducer_type == "concentric":
             return SWEPT, [self.turned(reducer_outline(reducer))]
-        wide = self.ring(reducer.outer_diameter, reducer.wall_thickness)
-        wall = {} if reducer.wall_thickness is None else {"WallThickness": _length(reducer.wall_thickness)}
-        narrow = self.add(
-            wide.is_a(),
-            ProfileType="AREA",
-            Position=self.entities.axes_2d((_length(float(local_point(frame, reducer.end)[0])), 0.0)),
-            Radius=_length(reducer.end_diameter / 2),
-            **wall,
-        )
-        cone = self.add(
-            "IfcExtrudedAreaSolidTapered",
-            SweptArea=wide,
-            Position=self.entities.identity,
-            ExtrudedDirection=self.entities.direction((0.0, 0.0, 1.0)),
-            Depth=_length(reducer.length),
-            EndSweptArea=narrow,
-        )
-        return TAPERED, [cone]
+        offset = float(local_point(frame, reducer.end)[0])
+        return TAPERED, [self.tapered(reducer.outer_diameter, reducer.end_diameter, reducer.wall_thickness, reducer.length, offset)]
 
     def _tee(self, tee: Tee, frame: Frame) -> list[Any]:
         begin, end, branch_end = tee_axes(tee, frame)

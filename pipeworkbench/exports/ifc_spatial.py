@@ -23,13 +23,17 @@ METRE_PER_MM = 0.001
 
 @dataclass(frozen=True)
 class MapPlace:
-    """Where the file's origin lies in a projected coordinate system: its name, metres, and the direction of the file's x axis (rad)."""
+    """Where the file's origin lies in a projected coordinate system: its name, metres, and the direction of the file's x axis (rad).
+
+    ``file_from_pipeline`` is the 4 x 4 motion from the pipeline's coordinates to the file's (mm), None where these are the same.
+    """
 
     system: str
     eastings: float = 0.0
     northings: float = 0.0
     height: float = 0.0
     heading: float = 0.0
+    file_from_pipeline: Matrix | None = None
 
 
 @dataclass(frozen=True)
@@ -76,7 +80,8 @@ def on_map(pipeline: Pipeline) -> tuple[Pipeline, MapPlace | None]:
         (0.0, 0.0, 1.0, -z),
         (0.0, 0.0, 0.0, 1.0),
     )
-    return placed(pipeline, file_from_plant, pipeline.frame), MapPlace(system, x * METRE_PER_MM, y * METRE_PER_MM, z * METRE_PER_MM, heading)
+    place = MapPlace(system, x * METRE_PER_MM, y * METRE_PER_MM, z * METRE_PER_MM, heading, file_from_plant)
+    return placed(pipeline, file_from_plant, pipeline.frame), place
 
 
 def skeleton(entities: Entities, name: str, place: MapPlace | None) -> Spatial:

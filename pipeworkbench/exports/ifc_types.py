@@ -7,14 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from pipeworkbench.exports.ifc_coverings import Insulation
-from pipeworkbench.exports.ifc_file import Entities, digest, label, rounded
-from pipeworkbench.exports.ifc_properties import Properties, material_of, type_sets
+from pipeworkbench.exports.ifc_file import ENUMERATED, Entities, digest, label, rounded
+from pipeworkbench.exports.ifc_properties import LABEL, LENGTH, NUMBER, Properties, material_of, type_sets
 from pipeworkbench.exports.ifc_shapes import ANGLE_DIGITS, LENGTH_DIGITS, Body, Shapes
-from pipeworkbench.exports.kinds import COLOURS, INSULATION_COLOUR, designation
+from pipeworkbench.exports.kinds import COLOURS, Colour, designation
 from pipeworkbench.pipeline import BLIND_FLANGE, AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee, free_id
 from pipeworkbench.solids import Frame
+from pipeworkbench.solids.coverings import Layer, Sheet
 from pipeworkbench.solids.frames import bend_angle, local_point
+
+IDENTIFIER, TEXT = "IfcIdentifier", "IfcText"
 
 
 @dataclass
@@ -44,19 +46,38 @@ class Types:
             self._types[key] = self._make(component, frame, digest(key))
         return self._types[key]
 
-    def covering(self, insulation: Insulation) -> Typed:
-        """Return the type of a layer of insulation."""
-        key = "insulation", rounded(insulation.thickness), insulation.material
+    def covering(self, layers: Sequence[Layer], sheet: Sheet | None, *, is_planned: bool = False) -> Typed:
+        """Return the type of coverings built of layers and a jacket; with properties where it is planned."""
+        key: tuple[Any, ...] = tuple((layer.material, rounded(layer.thickness)) for layer in layers)
+        # what one layer without a jacket is told by is as old as the first files
+        key = ("insulation", *reversed(key[0])) if len(key) == 1 and sheet is None else ("insulation", key, sheet and _told(sheet))
         if key not in self._types:
-            name = self._name(f"Insulation {insulation.thickness:g} mm, {insulation.material}")
-            identity = digest(key)
-            entity = self.entities.root("IfcCoveringType", identity, Name=label(name), PredefinedType="INSULATION")
-            material = self._material(insulation.material)[0]
-            layer = self.entities.add("IfcMaterialLayer", Material=material, LayerThickness=rounded(insulation.thickness))
-            layers = self.entities.add("IfcMaterialLayerSet", MaterialLayers=(layer,), LayerSetName=label(name))
-            self.entities.relate("IfcRelAssociatesMaterial", identity, "RelatingMaterial", "RelatedObjects", layers, [entity])
-            self._types[key] = Typed(identity, entity)
+            self._types[key] = self._make_covering(digest(key), layers, sheet, is_planned=is_planned)
         return self._types[key]
+
+    def _make_covering(self, key: str, layers: Sequence[Layer], sheet: Sheet | None, *, is_planned: bool) -> Typed:
+        name = self._name(covering_name(layers, sheet))
+        sets = covering_sets(layers, sheet, name) if is_planned else {}
+        entity = self.entities.root(
+            "IfcCoveringType",
+            key,
+            Name=label(name),
+            HasPropertySets=tuple(self.shared_set(title, properties) for title, properties in sets.items()) or None,
+            PredefinedType="INSULATION",
+        )
+        told: list[dict[str, str]] = [
+            {"Name": f"Layer {number}", "Category": "Insulation"} if is_planned else {} for number in range(1, len(layers) + 1)
+        ]
+        made = [self._material_layer(layer, **about) for layer, about in zip(layers, told, strict=True)]
+        if sheet is not None:
+            made.append(self._material_layer(sheet, Name="Jacket", Category="Finish"))
+        layer_set = self.entities.add("IfcMaterialLayerSet", MaterialLayers=tuple(made), LayerSetName=label(name))
+        self.entities.relate("IfcRelAssociatesMaterial", key, "RelatingMaterial", "RelatedObjects", layer_set, [entity])
+        return Typed(key, entity)
+
+    def _material_layer(self, layer: Layer | Sheet, **about: str) -> Any:
+        material = self._material(layer.material)[0]
+        return self.entities.add("IfcMaterialLayer", Material=material, LayerThickness=rounded(layer.thickness), **about)
 
     def relate(self) -> None:
         """Relate types to what is of them, and materials to types; to be called once, after all components."""
@@ -82,11 +103,16 @@ class Types:
             "IfcShapeRepresentation", ContextOfItems=self.context, RepresentationIdentifier="Body", RepresentationType=kind, Items=tuple(items)
         )
 
-    def styled(self, body: Body, kind: type[AnyComponent | Insulation]) -> Body:
+    def styled(self, body: Body, kind: type[AnyComponent]) -> Body:
         """Give a body's items the colour of a kind of components; return the body."""
-        for item in body[1]:
-            self.entities.add("IfcStyledItem", Item=item, Styles=(self._style(kind),))
+        self.coloured(body[1], kind.kind, COLOURS[kind])
         return body
+
+    def coloured(self, items: Sequence[Any], name: str, colour: Colour) -> None:
+        """Give solids a colour, which has a name; all of one name and colour share it."""
+        style = self.entities.once(("style", name, colour), lambda: self._style(name, colour))
+        for item in items:
+            self.entities.add("IfcStyledItem", Item=item, Styles=(style,))
 
     def _make(self, component: AnyComponent, frame: Frame, key: str) -> Typed:
         mapped = None
@@ -117,17 +143,11 @@ class Types:
             self._materials[name] = self.entities.add("IfcMaterial", Name=label(name)), []
         return self._materials[name]
 
-    def _style(self, kind: type[AnyComponent | Insulation]) -> Any:
-        """Return the surface style of a kind of components, which all of that kind share."""
-
-        def make() -> Any:
-            red, green, blue = INSULATION_COLOUR if issubclass(kind, Insulation) else COLOURS[kind]
-            colour = self.entities.add("IfcColourRgb", Red=red, Green=green, Blue=blue)
-            shading = self.entities.add("IfcSurfaceStyleShading", SurfaceColour=colour, Transparency=0.0)
-            name = "insulation" if issubclass(kind, Insulation) else kind.kind
-            return self.entities.add("IfcSurfaceStyle", Name=name, Side="BOTH", Styles=(shading,))
-
-        return self.entities.once(("style", kind), make)
+    def _style(self, name: str, colour: Colour) -> Any:
+        red, green, blue = colour
+        made = self.entities.add("IfcColourRgb", Red=red, Green=green, Blue=blue)
+        shading = self.entities.add("IfcSurfaceStyleShading", SurfaceColour=made, Transparency=0.0)
+        return self.entities.add("IfcSurfaceStyle", Name=label(name), Side="BOTH", Styles=(shading,))
 
 
 def type_key(component: AnyComponent, frame: Frame) -> tuple[Any, ...]:
@@ -175,6 +195,31 @@ def predefined_type(component: AnyComponent) -> str:
             return "OBSTRUCTION" if component.flange_type == BLIND_FLANGE else "CONNECTOR"
         case Cap():
             return "OBSTRUCTION"
+
+
+def covering_name(layers: Sequence[Layer], sheet: Sheet | None) -> str:
+    """Return what a type of coverings is called, such as ``Insulation 30 mm, Mineral wool; jacket 0.8 mm, Aluminium``."""
+    inside = "; ".join(f"{layer.thickness:g} mm, {layer.material}" for layer in layers)
+    jacket = f"{sheet.thickness:g} mm, {sheet.material}" if sheet else ""
+    if not layers:
+        return f"Cladding {jacket}"
+    return f"Insulation {inside}; jacket {jacket}" if jacket else f"Insulation {inside}"
+
+
+def covering_sets(layers: Sequence[Layer], sheet: Sheet | None, name: str) -> dict[str, Properties]:
+    """Return the property sets that all planned coverings of one build share, by their names."""
+    common: Properties = {"Reference": (IDENTIFIER, name), "Status": (ENUMERATED, "NEW")}
+    build: Properties = {"NumberOfLayers": (NUMBER, len(layers))}
+    for number, layer in enumerate(layers, 1):
+        build |= {f"Layer{number}Material": (LABEL, layer.material), f"Layer{number}Thickness": (LENGTH, rounded(layer.thickness))}
+    if sheet is not None:
+        common["Finish"] = TEXT, f"{sheet.thickness:g} mm {sheet.material}"
+        build |= {"JacketMaterial": (LABEL, sheet.material), "JacketThickness": (LENGTH, rounded(sheet.thickness))}
+    return {"Pset_CoveringCommon": common, "PipeWorkbench_InsulationBuild": build}
+
+
+def _told(sheet: Sheet) -> tuple[str, float]:
+    return sheet.material, rounded(sheet.thickness)
 
 
 def _length(value: float | None) -> float | None:

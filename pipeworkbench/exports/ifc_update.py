@@ -19,7 +19,16 @@ from pipeworkbench.exports.ifc_file import expanded, import_ifcopenshell
 if TYPE_CHECKING:
     import ifcopenshell
 
-OUR_SETS = ("PipeWorkbench_", "Pset_Pipe", "Pset_Fitting", "Pset_DistributionPortTypePipe", "Pset_Uncertainty", "Qto_Pipe", "Qto_Covering")
+OUR_SETS = (
+    "PipeWorkbench_",
+    "Pset_Pipe",
+    "Pset_Fitting",
+    "Pset_DistributionPortTypePipe",
+    "Pset_Uncertainty",
+    "Pset_Covering",
+    "Qto_Pipe",
+    "Qto_Covering",
+)
 OUR_UUID_VERSION = 5
 KEPT = ("IfcRelDefinesByProperties", "IfcRelAssociates", "IfcRelAssignsToGroup")
 logger = logging.getLogger(__name__)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import base64
 import datetime as dt
-import json
 import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
@@ -16,9 +15,10 @@ import numpy as np
 
 from pipeworkbench import __version__
 from pipeworkbench.errors import InputError, MissingPackageError
-from pipeworkbench.exports.charts import Texts, accuracy_charts
+from pipeworkbench.exports.charts import accuracy_charts
 from pipeworkbench.exports.kinds import equivalents_text, size_of
 from pipeworkbench.exports.pictures import annotated
+from pipeworkbench.exports.texts import Texts, texts_of
 from pipeworkbench.files import package_folder, written_whole
 from pipeworkbench.pipeline import BLIND_FLANGE, AnyComponent, Elbow, Flange, Joint, Pipe, Pipeline, Reducer, StationPose, Tee
 from pipeworkbench.recon.adjustment.changes import SUMMARY_KEY
@@ -27,7 +27,6 @@ from pipeworkbench.recon.station import Station
 if TYPE_CHECKING:
     import jinja2
 
-LANGUAGES = ("en", "de")
 TEMPLATE, TEXTS = "report.html.j2", "report.texts.json"
 PHOTO_WIDTH = 1000  # px
 JPEG_QUALITY = 82
@@ -54,7 +53,7 @@ def write_report(
     stations : sequence of Station
         Those whose cameras are named and whose photographs are shown with the components' contours.
     language : str
-        One of LANGUAGES.
+        One of ``texts.LANGUAGES``.
     title : str, optional
         The project's name; by default the pipeline's frame.
     photographs : bool
@@ -110,10 +109,7 @@ def _template() -> jinja2.Template:
 
 
 def _texts(language: str) -> Texts:
-    if language not in LANGUAGES:
-        raise InputError("the report", "language", f"there is no '{language}'", f"use one of {', '.join(LANGUAGES)}")
-    texts: dict[str, Texts] = json.loads((package_folder("resources") / "templates" / TEXTS).read_text(encoding="utf-8"))
-    return texts[language]
+    return texts_of(TEXTS, language, "the report")
 
 
 def _figures(pipeline: Pipeline, texts: Texts) -> list[Row]:

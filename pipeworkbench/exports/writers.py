@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.exports import fcstd, ifc, pictures, report, step, tables
+from pipeworkbench.exports import fcstd, ifc, pcf, pictures, report, step, tables
 from pipeworkbench.pipeline import Pipeline
 from pipeworkbench.recon.station import Station
 
@@ -37,23 +37,26 @@ WRITERS: dict[str, Callable[[Result, Path], None]] = {
     ".csv": lambda result, path: tables.write_csv(result.pipeline, path),
     ".ifc": lambda result, path: ifc.write_ifc(result.pipeline, path, ifc.IfcOptions(schema=result.ifc_schema)),
     ".step": lambda result, path: step.write_step(result.pipeline, path),
+    ".pcf": lambda result, path: pcf.write_pcf(result.pipeline, path),
     ".fcstd": lambda result, path: fcstd.write_fcstd(result.pipeline, path, result.stations),
     ".png": lambda result, path: pictures.write_picture(result.pipeline, result.stations, path),
     ".html": lambda result, path: _write_report(result, path),
 }
 
 
-def check_paths(paths: Sequence[Path], *, has_photographs: bool = True, inputs: Sequence[Path] = ()) -> None:
+def check_paths(
+    paths: Sequence[Path], *, has_photographs: bool = True, inputs: Sequence[Path] = (), endings: Collection[str] = tuple(WRITERS)
+) -> None:
     """Refuse, before anything is computed, what could not be written: unknown endings, missing folders, one name twice.
 
     ``inputs`` are files that must not be overwritten; ``has_photographs`` is False where there is no
-    station at hand, so that no picture can be drawn.
+    station at hand, so that no picture can be drawn; ``endings`` are those that are known.
     """
     seen = set()
     kept = {path.resolve() for path in inputs}
     for path in paths:
-        if path.suffix.lower() not in WRITERS:
-            raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(WRITERS).replace('fcstd', 'FCStd')}")
+        if path.suffix.lower() not in endings:
+            raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(endings).replace('fcstd', 'FCStd')}")
         if path.suffix.lower() == ".fcstd":
             fcstd.find_freecad()
         if path.suffix.lower() == ".png" and not has_photographs:

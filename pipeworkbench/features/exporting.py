@@ -37,6 +37,7 @@ class Format:
 FORMATS = (
     Format(".ifc", "IFC", "For BIM: pipe segments and fittings with their dimensions and accuracy"),
     Format(".step", "STEP solids", "For CAD: named solids, coloured by kind"),
+    Format(".pcf", "Piping component file", "For isometrics: components with their ends, bores and items"),
     Format(".html", "Report", "For people: one file with dimensions, accuracy, charts and photographs"),
     Format(".csv", "Table", "For spreadsheets: a line per component"),
     Format(".png", "Photographs with contours", "To check by eye: the photographs with what was measured drawn on them"),

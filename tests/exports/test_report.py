@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.exports.report import LANGUAGES, PHOTO_WIDTH, report_page, write_report
+from pipeworkbench.exports.report import PHOTO_WIDTH, report_page, write_report
+from pipeworkbench.exports.texts import LANGUAGES
 from pipeworkbench.exports.writers import Result, write
 from pipeworkbench.pipeline import Pipeline
 from pipeworkbench.recon.station import read_station
