@@ -10,11 +10,13 @@ help:  ## list the targets
 setup:  ## install FreeCAD (Debian) and the Python packages where they are missing
 	@bash scripts/setup.sh
 
-demo: setup  ## reconstruct the bundled sample and say where the results are
+demo: setup  ## reconstruct and insulate the bundled sample and say where the results are
 	@mkdir -p $(results)
 	$(python) -m pipeworkbench reconstruct resources/samples/dummy/A \
 	  --out $(results)/dummy.json --out $(results)/dummy.csv --out $(results)/dummy.png \
 	  --out $(results)/dummy.ifc --out $(results)/dummy.step --out $(results)/dummy.FCStd
+	$(python) -m pipeworkbench insulate $(results)/dummy.json --thickness 30 --medium 90 --quiet \
+	  --out $(results)/dummy_insulation.pdf --out $(results)/dummy_insulation.dxf --out $(results)/dummy_insulation.step --out $(results)/dummy_insulation.xlsx
 	@echo "The results are in $(abspath $(results)): look at dummy.png first; then make install, and open dummy.FCStd in FreeCAD."
 
 test: setup  ## run every test: plain, inside FreeCAD, inside FreeCAD's window
@@ -35,6 +37,7 @@ bench: setup  ## accuracy and time of the steps, beside peers where these are to
 	$(python) bench/reconstruct.py
 	$(python) bench/recompute.py
 	$(python) bench/ifc.py
+	$(python) bench/insulating.py $(if $(wildcard ../shared),../shared)
 	[ ! -d ../shared ] || $(python) bench/elbows_flanges.py ../shared --out $(results)/elbows_flanges.md
 	[ ! -d ../shared ] || $(python) bench/adjust.py ../shared --out $(results)/adjust.md
 	$(python) bench/register.py

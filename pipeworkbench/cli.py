@@ -19,7 +19,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-from pipeworkbench import __version__, cli_place
+from pipeworkbench import __version__, cli_insulate, cli_place
 from pipeworkbench.catalogue import using_folder
 from pipeworkbench.errors import COMMAND_LINE, InputError, PipeWorkbenchError, one_line
 
@@ -78,7 +78,7 @@ def _parser() -> argparse.ArgumentParser:
         "reconstruct",
         help="pipes from a station's photographs, picked or not",
         description="Reconstructs the pipes of a station, picked or found by themselves, and writes them in the formats of the outputs' endings.",
-        epilog="Endings: .json .csv .ifc .step .FCStd .png .html. Lengths are mm in the station's level frame.",
+        epilog="Endings: .json .csv .ifc .step .pcf .FCStd .png .html. Lengths are mm in the station's level frame.",
     )
     command.add_argument("station", metavar="STATION_DIR", type=Path, nargs="+", help="folder with station.json (or that file); several are merged")
     command.add_argument(
@@ -128,6 +128,7 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
     cli_place.add_ifc_schema(command)
     command.set_defaults(run=_convert)
     cli_place.add_parser(commands)
+    cli_insulate.add_parser(commands)
 
 
 def _add_catalogue(command: argparse.ArgumentParser) -> None:

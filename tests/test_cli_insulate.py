@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""`pipeworkbench insulate`: from a pipeline to cut sheets, solids, lists and coverings."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from pipeworkbench.cli import main
+from pipeworkbench.pipeline import Elbow, Joint, Pipe, Pipeline
+
+DUMMY = Path(__file__).parent / "data" / "dummy.json"
+SAMPLE = Path(__file__).parents[1] / "resources" / "samples" / "insulation.json"
+
+
+def bend(radius):
+    """Two pipes and the bend between them."""
+    size = {"outer_diameter": 48.3, "wall_thickness": 2.6, "dn": 40}
+    return Pipeline(
+        frame="A",
+        components=(
+            Pipe(id="P0", start=(0, 0, 0), end=(1000, 0, 0), **size),
+            Elbow(
+                id="E0",
+                start=(1000, 0, 0),
+                intersection=(1000 + radius, 0, 0),
+                end=(1000 + radius, radius, 0),
+                angle_deg=90,
+                bend_radius=radius,
+                **size,
+            ),
+            Pipe(id="P1", start=(1000 + radius, radius, 0), end=(1000 + radius, radius + 800, 0), **size),
+        ),
+        joints=(Joint(a="P0", a_port=1, b="E0", b_port=0), Joint(a="E0", a_port=1, b="P1", b_port=0)),
+    )
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "bend.json"
+    bend(57.0).write(path)
+    return path
+
+
+def summary(capsys, *arguments):
+    assert main(["insulate", *map(str, arguments), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def refusal(capsys, *arguments):
+    assert main(["insulate", *map(str, arguments)]) == 2
+    return capsys.readouterr().err
+
+
+def rows(path):
+    with path.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.mark.slow
+def test_every_ending_gets_what_belongs_into_it(file, tmp_path, capsys):
+    outputs = [tmp_path / f"out.{ending}" for ending in ("dxf", "svg", "pdf", "csv", "xlsx", "step", "ifc", "pcf")]
+    tables = {"--labels": tmp_path / "labels.csv", "--clashes": tmp_path / "clashes.csv", "--energy": tmp_path / "energy.csv"}
+    more = [str(part) for option, path in tables.items() for part in (option, path)]
+    said = summary(
+        capsys, file, "--thickness", 30, "--medium", 90, "--parts", tmp_path / "parts", *more, *(part for path in outputs for part in ("--out", path))
+    )
+    begins = {
+        "dxf": b"  0\nSECTION",
+        "svg": b"<?xml",
+        "pdf": b"%PDF",
+        "csv": b"part,",
+        "xlsx": b"PK",
+        "step": b"ISO-10303-21",
+        "pcf": b"ISOGEN-FILES",
+    }
+    for path in outputs:
+        assert path.read_bytes().startswith(begins.get(path.suffix[1:], b"ISO-10303-21")), path
+    assert b"IFCCOVERING(" in (tmp_path / "out.ifc").read_bytes()
+    parts = rows(tmp_path / "out.csv")
+    assert sum(int(part["quantity"]) for part in parts) == said["parts"] == len(rows(tables["--labels"]))
+    assert len(list((tmp_path / "parts").glob("*.dxf"))) == len(parts)
+    assert [row["component"] for row in rows(tables["--energy"])] == ["P0", "E0", "P1"]
+    assert rows(tables["--clashes"]) == []
+    assert said["energy"]["bare"]["heat"] > 5 * said["energy"]["insulated"]["heat"] > 0
+    assert said["volume_m3"] > 0.01
+
+
+def test_two_answers_what_a_pipe_loses_now_and_what_with_more(file, capsys):
+    heat = [summary(capsys, file, "--thickness", thickness, "--medium", 90)["energy"]["insulated"]["heat"] for thickness in (20, 30)]
+    bare = summary(capsys, file, "--thickness", 20, "--medium", 90, "--price", 0.12, "--co2", 0.2)["energy"]
+    assert bare["bare"]["heat"] > heat[0] > heat[1]
+    assert bare["saved"]["cost"] == pytest.approx(0.12 * bare["saved"]["energy"])
+    assert bare["saved"]["co2"] == pytest.approx(0.2 * bare["saved"]["energy"])
+
+
+def test_without_a_temperature_no_loss_is_told(file, capsys):
+    assert summary(capsys, file, "--thickness", 20)["energy"] is None
+
+
+def test_without_a_jacket_there_are_no_parts(file, capsys):
+    said = summary(capsys, file, "--thickness", 20, "--jacket", "none")
+    assert said["parts"] == said["sheets"] == 0
+    assert said["pieces"] == 3
+
+
+def test_specification_says_what_goes_where(tmp_path, capsys):
+    out = tmp_path / "cuts.csv"
+    said = summary(capsys, DUMMY, "--spec", SAMPLE, "--leave-out", "--out", out)
+    assert said["pieces"] > 0
+    assert rows(out)
+
+
+@pytest.mark.slow
+def test_what_does_not_fit_is_named_with_the_largest_thickness_that_works(tmp_path, capsys):
+    file = tmp_path / "tight.json"
+    bend(57.0).write(file)
+    tight = tmp_path / "tight.spec.json"
+    layer = {"material": "mineral wool", "thickness": 60}
+    tight.write_text(
+        json.dumps({"schema": "pipeworkbench-insulation/1", "default": {"layers": [layer], "bends": {"tight": "refuse"}}}), encoding="utf-8"
+    )
+    said = refusal(capsys, file, "--spec", tight)
+    assert said.startswith("pipeworkbench: E0: thickness: 60 mm does not fit into a bend of radius 57 mm")
+    largest = float(said.partition("give at most ")[2].split(" mm")[0])
+    layer["thickness"] = largest
+    tight.write_text(
+        json.dumps({"schema": "pipeworkbench-insulation/1", "default": {"layers": [layer], "bends": {"tight": "refuse"}}}), encoding="utf-8"
+    )
+    assert main(["insulate", str(file), "--spec", str(tight), "--out", str(tmp_path / "tight.step"), "--quiet"]) == 0
+
+
+def test_what_does_not_fit_stays_bare_where_that_is_asked_for(tmp_path, capsys):
+    file, spec = tmp_path / "tight.json", tmp_path / "spec.json"
+    bend(57.0).write(file)
+    changes = {"layers": [{"material": "mineral wool", "thickness": 60}], "bends": {"tight": "refuse"}}
+    spec.write_text(json.dumps({"schema": "pipeworkbench-insulation/1", "default": changes}), encoding="utf-8")
+    said = summary(capsys, file, "--spec", spec, "--leave-out")
+    assert said["bare"] == ["E0"]
+    assert len(said["left_out"]) == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--thickness", "-5"], ["thickness", "positive"]),
+        (["--thickness", "nan"], ["thickness", "positive"]),
+        (["--thickness", "30", "--material", "minral wool"], ["material", "mineral wool"]),
+        (["--thickness", "30", "--jacket", "tin foil"], ["jacket"]),
+        (["--thickness", "30", "--medium", "-300"], ["the command line", "medium_temperature"]),
+        (["--thickness", "30", "--energy", "e.csv"], ["--energy", "--medium"]),
+        (["--thickness", "30", "--out", "x.FCStd"], ["x.FCStd", ".dxf"]),
+        (["--thickness", "30", "--labels", "x.doc"], ["x.doc", ".pdf"]),
+        (["--spec", "{sample}", "--material", "mineral wool"], ["--material", "--thickness"]),
+        (["--spec", "missing.json"], ["missing.json"]),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_in_one_line(file, capsys, arguments, words):
+    said = refusal(capsys, file, *(argument.format(sample=SAMPLE) for argument in arguments))
+    assert said.count("\n") == 1
+    for word in words:
+        assert word in said
+
+
+def test_inputs_are_never_overwritten(file, tmp_path, capsys):
+    spec = tmp_path / "spec.csv"
+    assert "input" in refusal(capsys, file, "--spec", spec, "--out", spec)
+
+
+def test_negative_overlap_is_refused_with_its_key(file, tmp_path, capsys):
+    spec = tmp_path / "spec.json"
+    changes = {"layers": [{"material": "mineral wool", "thickness": 30}], "seams": {"longitudinal_overlap": -1}}
+    spec.write_text(json.dumps({"schema": "pipeworkbench-insulation/1", "default": changes}), encoding="utf-8")
+    said = refusal(capsys, file, "--spec", spec)
+    assert f"{spec}: default.seams.longitudinal_overlap" in said
