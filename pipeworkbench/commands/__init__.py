@@ -20,6 +20,7 @@ from pipeworkbench.commands.find_pipes import FindPipes
 from pipeworkbench.commands.fittings import FindFittings
 from pipeworkbench.commands.flange import MeasureFlange
 from pipeworkbench.commands.import_station import ImportStation
+from pipeworkbench.commands.insulation import Insulate
 from pipeworkbench.commands.merge_stations import MergeStations
 from pipeworkbench.commands.photo_window import PhotoWindowCommand
 from pipeworkbench.commands.pipe import MeasurePipe
@@ -47,7 +48,7 @@ class Group:
 GROUPS = (
     Group("Pipe measuring", (ImportStation, PhotoWindowCommand, MeasurePipe, FindPipes, FindElbows, MeasureFlange, FindFittings, ReconstructPicks)),
     Group("Pipe adjustment", (Adjust, MergeStations, Deviations)),
-    Group("Pipe output", (Export, Report)),
+    Group("Pipe output", (Insulate, Export, Report)),
     Group("Pipe Workbench help", (ExampleProject, ShowPreferences)),
 )
 IN_CONTEXT_MENU: tuple[type[Command], ...] = (PhotoWindowCommand, Export)  # of the tree and the 3D view

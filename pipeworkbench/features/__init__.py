@@ -18,25 +18,34 @@ FreeCAD is imported when a function is called, not with this module.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pipeworkbench.features.insulating import Insulated
+    from pipeworkbench.insulation.planning import Plan
+    from pipeworkbench.insulation.specification import Specification
     from pipeworkbench.pipeline import AnyComponent, Cap, Elbow, Flange, Pipe, Reducer, Tee
     from pipeworkbench.recon.station import Station
 
 __all__ = [
+    "apply_specification",
     "component_of",
     "connect",
     "disconnect",
+    "export_insulation",
+    "insulation_of",
     "make_cap",
     "make_elbow",
     "make_flange",
+    "make_insulation",
     "make_pipe",
     "make_project",
     "make_reducer",
     "make_station",
     "make_tee",
+    "plan_of",
     "set_component",
 ]
 
@@ -144,6 +153,69 @@ def disconnect(obj: Any, end: int) -> None:
     from pipeworkbench.features import joints
 
     joints.disconnect(obj, end)
+
+
+def make_insulation(document: Any, objects: Iterable[Any] | None = None, specification: Specification | None = None, **settings: Any) -> Any:
+    """Insulate a document's components (or those among ``objects``) and return the object that stands for it.
+
+    Parameters
+    ----------
+    document : FreeCAD document
+    objects : iterable of document objects, optional
+    specification : Specification, optional
+        What is not given as a setting, and rules for some of the components.
+    **settings
+        Such as ``thickness=60, material="mineral wool", jacket="aluminium"``; all of them are fields of
+        `pipeworkbench.features.insulation_settings.Settings`.
+
+    Raises
+    ------
+    InputError
+        Where there is no component, or a value does not fit.
+    """
+    from pipeworkbench.features import insulation
+
+    return insulation.make_insulation(document, objects, specification, **settings)
+
+
+def insulation_of(obj: Any) -> Insulated:
+    """Return which components an Insulation object holds, by their ids, and the specification that it is.
+
+    Raises
+    ------
+    InputError
+        Where a property's value does not fit.
+    """
+    from pipeworkbench.features import insulation
+
+    return insulation.insulation_of(obj)
+
+
+def apply_specification(document: Any, specification: Specification) -> Any:
+    """Insulate all components of a document as a specification says, and return the object that stands for it; see `make_insulation`."""
+    from pipeworkbench.features import insulation
+
+    return insulation.apply_specification(document, specification)
+
+
+def plan_of(document: Any) -> Plan:
+    """Return the plan of a document's insulation: all pieces, clashes, what stays bare and why.
+
+    Raises
+    ------
+    InputError
+        Where nothing is insulated, or components of several stations that are not merged are.
+    """
+    from pipeworkbench.features import insulation
+
+    return insulation.plan_of(document)
+
+
+def export_insulation(document: Any, path: Path) -> None:
+    """Write a document's insulation in the format of the path's ending: cut sheets, cut lists, models; errors as of `plan_of`."""
+    from pipeworkbench.features import insulation
+
+    insulation.export_insulation(document, path)
 
 
 def _made(document: Any, component: AnyComponent) -> Any:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -120,10 +120,11 @@ def put_into_group(document: Any, objects: Iterable[Any], station: str | None) -
         group.addObjects(list(objects))
 
 
-def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline:
+def pipeline_of(document: Any, objects: Iterable[Any] | None = None, read: Callable[[Any], AnyComponent] = component_of) -> Pipeline:
     """Return the document's components (or those among ``objects``) as a pipeline, with the joints between them.
 
-    A component whose station was deleted still names it: it was measured there.
+    A component whose station was deleted still names it: it was measured there. ``read`` returns an object's component, for
+    those who know most of them already.
 
     Raises
     ------
@@ -134,7 +135,7 @@ def pipeline_of(document: Any, objects: Iterable[Any] | None = None) -> Pipeline
     chosen = [obj for obj in (document.Objects if objects is None else objects) if is_component(obj)]
     if not chosen:
         raise InputError(document.Label, "", "the document has no pipes or fittings", "reconstruct some picks first")
-    components = tuple(component_of(obj) for obj in chosen)
+    components = tuple(read(obj) for obj in chosen)
     measured_by = {component.station for component in components if component.station}
     for obj in connections_in(document).values():
         refuse_newer(obj)

@@ -6,7 +6,8 @@ from __future__ import annotations
 import itertools
 from typing import Any, NamedTuple
 
-from pipeworkbench.exports.kinds import COLOURS
+from pipeworkbench.exports.kinds import COLOURS, material_colour
+from pipeworkbench.features.component import NONE
 from pipeworkbench.features.preferences import Preferences, preferences
 
 Colour = tuple[float, float, float]  # red, green, blue from 0 to 1
@@ -48,6 +49,11 @@ def colour_of(obj: Any, mode: str) -> Colour:
     if mode == "loa":
         return LEVELS.get(obj.LevelOfAccuracy, ("", chosen.unknown_colour))[1]
     return chosen.approximate_colour if getattr(obj, "Approximate", False) else chosen.kind_colour(obj.Proxy.kind.kind)
+
+
+def insulation_colour(jacket: str, material: str) -> Colour:
+    """Return the colour of insulation: its jacket's, its material's where there is none ("none")."""
+    return material_colour(material) if jacket == NONE else material_colour(jacket, jacket=True)
 
 
 def legend_of(mode: str) -> list[LegendEntry]:

@@ -12,20 +12,22 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.features.base import Feature, is_kind
 from pipeworkbench.features.cap import CapFeature
 from pipeworkbench.features.carrying import together_hooks
-from pipeworkbench.features.component import ComponentFeature
+from pipeworkbench.features.component import NONE, ComponentFeature
 from pipeworkbench.features.connections import ConnectionsFeature
 from pipeworkbench.features.document import components_in
 from pipeworkbench.features.elbow import ElbowFeature
 from pipeworkbench.features.flange import FlangeFeature
+from pipeworkbench.features.insulation import InsulationFeature
 from pipeworkbench.features.pipe import PipeFeature
 from pipeworkbench.features.project import COLOUR_MODES, ProjectFeature, make_project, project_of
 from pipeworkbench.features.reducer import ReducerFeature
 from pipeworkbench.features.station import StationFeature
 from pipeworkbench.features.tee import TeeFeature
 from pipeworkbench.files import package_folder
-from pipeworkbench.gui.colours import LegendEntry, colour_of, legend_of
+from pipeworkbench.gui.colours import LegendEntry, colour_of, insulation_colour, legend_of
 from pipeworkbench.gui.station_scene import StationScene
 
+SEEN_THROUGH = 60  # per cent: insulation
 COLOURED_BY = frozenset({"Quality", "LevelOfAccuracy", "Approximate"})  # properties that colours depend on
 
 
@@ -95,6 +97,27 @@ class CapView(ComponentView):
     """A cap in the tree."""
 
     icon = "cap.svg"
+
+
+class InsulationView(ViewProvider):
+    """Insulation in the tree; the pipe is seen through it, and its colour says what is outside."""
+
+    icon = "insulation.svg"
+
+    def updateData(self, obj: Any, name: str) -> None:  # FreeCAD's name
+        """Take the colour of another jacket or material."""
+        if name in ("Jacket", "Material") and obj.ViewObject is not None:
+            _colour_insulation(obj)
+
+    def doubleClicked(self, view_object: Any) -> bool:  # FreeCAD's name
+        """Open the panel with the object's settings."""
+        from pipeworkbench.gui.failures import failures_told
+
+        with failures_told(view_object.Object.Label):
+            from pipeworkbench.gui.pipeline_panels.insulation import InsulationPanel
+
+            InsulationPanel(view_object.Object.Document, view_object.Object).open()
+        return True
 
 
 class ConnectionsView(ViewProvider):
@@ -172,6 +195,7 @@ VIEWS: dict[type[Feature], type[ViewProvider]] = {
     ReducerFeature: ReducerView,
     CapFeature: CapView,
     ConnectionsFeature: ConnectionsView,
+    InsulationFeature: InsulationView,
     StationFeature: StationView,
 }
 
@@ -186,6 +210,9 @@ def show(obj: Any) -> None:
     obj.ViewObject.Visibility = True
     if isinstance(obj.Proxy, ComponentFeature):
         _colour(obj, colour_mode(obj.Document))
+    elif is_kind(obj, InsulationFeature):
+        obj.ViewObject.Transparency = SEEN_THROUGH
+        _colour_insulation(obj)
 
 
 def colour_mode(document: Any) -> str:
@@ -253,3 +280,7 @@ def _colour(obj: Any, mode: str) -> None:
     colour = colour_of(obj, mode)
     if obj.ViewObject is not None and obj.ViewObject.ShapeColor[:3] != colour:
         obj.ViewObject.ShapeColor = colour
+
+
+def _colour_insulation(obj: Any) -> None:
+    obj.ViewObject.ShapeColor = insulation_colour(getattr(obj, "Jacket", NONE), getattr(obj, "Material", ""))

@@ -8,8 +8,36 @@
             <translation>Ein Formstück (tee) oder ein aufgeschweißter Abzweig (set-on)</translation>
         </message>
         <message>
+            <source>Added to the bolts' length between flange and insulation, so that bolts can be pulled</source>
+            <translation>Zugabe zur Länge der Schrauben zwischen Flansch und Dämmung, damit sie gezogen werden können</translation>
+        </message>
+        <message>
+            <source>Bends of straight pieces (segmented) or round ones, as of foam shells (smooth)</source>
+            <translation>Bögen aus geraden Segmenten (segmented) oder runde, wie aus Schaumschalen (smooth)</translation>
+        </message>
+        <message>
+            <source>Bends that are too tight for the thickness: two pieces with a mitre, or refuse</source>
+            <translation>Bögen, die für die Dicke zu eng sind: zwei Stücke auf Gehrung (mitre) oder ablehnen (refuse)</translation>
+        </message>
+        <message>
+            <source>Between a flange's rim and the inside of its box</source>
+            <translation>Zwischen dem Rand eines Flansches und dem Inneren seiner Kappe</translation>
+        </message>
+        <message>
             <source>Between the run's direction and the branch</source>
             <translation>Zwischen der Richtung des Durchgangs und dem Abzweig</translation>
+        </message>
+        <message>
+            <source>Boxes of two half shells over flanges, or bare flanges</source>
+            <translation>Kappen aus zwei Halbschalen über Flanschen (box) oder freie Flansche (bare)</translation>
+        </message>
+        <message>
+            <source>By what the first and the last piece are longer than the half</source>
+            <translation>Um wie viel das erste und das letzte Segment länger sind als die Hälfte</translation>
+        </message>
+        <message>
+            <source>CO2 of a kWh of energy in kg, 0: not known</source>
+            <translation>CO2 einer kWh Energie in kg, 0: nicht bekannt</translation>
         </message>
         <message>
             <source>Change of direction</source>
@@ -18,6 +46,10 @@
         <message>
             <source>Class that FreeCAD's own BIM exporter gives it</source>
             <translation>Klasse, die FreeCADs eigener BIM-Export ihm gibt</translation>
+        </message>
+        <message>
+            <source>Coverings: straight ones, bends, boxes, ...</source>
+            <translation>Umhüllungen: gerade Stücke, Bögen, Kappen, ...</translation>
         </message>
         <message>
             <source>Diameter D of the plate</source>
@@ -40,6 +72,22 @@
             <translation>Durchmesser der Dichtleiste; 0, wenn er nicht bekannt ist</translation>
         </message>
         <message>
+            <source>Diameter of the rivet holes</source>
+            <translation>Durchmesser der Nietlöcher</translation>
+        </message>
+        <message>
+            <source>Digest of what the shape was made from</source>
+            <translation>Prüfsumme dessen, woraus die Form entstanden ist</translation>
+        </message>
+        <message>
+            <source>Digests of the shape's parts</source>
+            <translation>Prüfsummen der Teile der Form</translation>
+        </message>
+        <message>
+            <source>Distance of the rivet holes along seams, 0 for none</source>
+            <translation>Abstand der Nietlöcher entlang der Nähte, 0 für keine</translation>
+        </message>
+        <message>
             <source>Draw the bolts, through a partner of the same thickness</source>
             <translation>Die Schrauben zeichnen, durch einen gleich dicken Gegenflansch</translation>
         </message>
@@ -50,6 +98,10 @@
         <message>
             <source>Files of the photographs, relative to the document</source>
             <translation>Dateien der Fotos, relativ zum Dokument</translation>
+        </message>
+        <message>
+            <source>First and last piece of a bend: half as long as the others, equal, or longer than the half</source>
+            <translation>Erstes und letztes Segment eines Bogens: halb so lang wie die anderen (half), gleich lang (equal) oder länger als die Hälfte (longer)</translation>
         </message>
         <message>
             <source>Flanges of the same dimensions, which images cannot tell apart</source>
@@ -76,8 +128,28 @@
             <translation>Vom Schweißende bis zum Scheitel</translation>
         </message>
         <message>
+            <source>Heat delivered over energy bought</source>
+            <translation>Gelieferte Wärme je eingekaufter Energie</translation>
+        </message>
+        <message>
+            <source>Heat loss in W with the insulation, bare components included</source>
+            <translation>Wärmeverlust in W mit der Dämmung, ungedämmte Bauteile eingeschlossen</translation>
+        </message>
+        <message>
+            <source>Heat loss in W without insulation; 0 where the medium's temperature is not known</source>
+            <translation>Wärmeverlust in W ohne Dämmung; 0, wenn die Temperatur des Mediums nicht bekannt ist</translation>
+        </message>
+        <message>
             <source>Height of the raised face</source>
             <translation>Höhe der Dichtleiste</translation>
+        </message>
+        <message>
+            <source>Hours of operation in a year</source>
+            <translation>Betriebsstunden im Jahr</translation>
+        </message>
+        <message>
+            <source>How far a box reaches over the pipe's jacket</source>
+            <translation>Wie weit eine Kappe über den Mantel des Rohrs reicht</translation>
         </message>
         <message>
             <source>How well the standard's dimensions are sourced</source>
@@ -104,6 +176,10 @@
             <translation>Die Fotos im Dokument behalten, was dessen Datei vergrößert</translation>
         </message>
         <message>
+            <source>Layers around the second one, outwards, each like '40 mm mineral wool'</source>
+            <translation>Lagen um die zweite, nach außen, jede wie '40 mm mineral wool'</translation>
+        </message>
+        <message>
             <source>Length along the axis</source>
             <translation>Länge entlang der Achse</translation>
         </message>
@@ -114,6 +190,10 @@
         <message>
             <source>Level of accuracy (USIBD)</source>
             <translation>Genauigkeitsstufe (LOA nach USIBD)</translation>
+        </message>
+        <message>
+            <source>Mark the beads along the round edges</source>
+            <translation>Die Sicken entlang der runden Kanten anzeichnen</translation>
         </message>
         <message>
             <source>Name in exchange files</source>
@@ -140,8 +220,16 @@
             <translation>Nummern der Enden, die mit den eigenen verbunden sind</translation>
         </message>
         <message>
+            <source>Of all layers, without the jacket</source>
+            <translation>Aller Lagen, ohne den Blechmantel</translation>
+        </message>
+        <message>
             <source>Of the narrow end across the axis, where it is eccentric</source>
             <translation>Versatz des engen Endes quer zur Achse, wenn es exzentrisch ist</translation>
+        </message>
+        <message>
+            <source>Outer surface of the jacket, without overlaps</source>
+            <translation>Äußere Oberfläche des Blechmantels, ohne Überlappungen</translation>
         </message>
         <message>
             <source>Outside diameter</source>
@@ -160,6 +248,14 @@
             <translation type="vanished">PN</translation>
         </message>
         <message>
+            <source>Pieces of a segmented bend, 0: by the rule</source>
+            <translation>Segmente eines Segmentbogens, 0: nach der Regel</translation>
+        </message>
+        <message>
+            <source>Pipes and fittings that are insulated</source>
+            <translation>Rohre und Formteile, die gedämmt werden</translation>
+        </message>
+        <message>
             <source>Pressure class as a number</source>
             <translation>Druckstufe als Zahl</translation>
         </message>
@@ -168,12 +264,24 @@
             <translation>Druckstufe der Normen</translation>
         </message>
         <message>
+            <source>Price of a kWh of energy, 0: not known</source>
+            <translation>Preis einer kWh Energie, 0: nicht bekannt</translation>
+        </message>
+        <message>
             <source>RMS distance to the image edges in pixels (Eq. 4)</source>
             <translation>Mittlerer quadratischer Abstand zu den Bildkanten in Pixeln (Gl. 4)</translation>
         </message>
         <message>
             <source>Radius of the bent axis</source>
             <translation>Radius der gebogenen Achse</translation>
+        </message>
+        <message>
+            <source>Sheet metal around the insulation</source>
+            <translation>Blech um die Dämmung</translation>
+        </message>
+        <message>
+            <source>Speed of the wind, 0 indoors</source>
+            <translation>Windgeschwindigkeit, 0 in Gebäuden</translation>
         </message>
         <message>
             <source>Standard deviation of the direction</source>
@@ -216,6 +324,18 @@
             <translation>Standpunkte, von denen die Bauteile gemessen wurden</translation>
         </message>
         <message>
+            <source>Take the next thickness that can be bought where it follows from a rule</source>
+            <translation>Die nächste lieferbare Dicke nehmen, wo sie sich aus einer Regel ergibt</translation>
+        </message>
+        <message>
+            <source>Temperature of the medium in °C, -273.15: not known</source>
+            <translation>Temperatur des Mediums in °C, -273,15: nicht bekannt</translation>
+        </message>
+        <message>
+            <source>Temperature of the surroundings in °C</source>
+            <translation>Temperatur der Umgebung in °C</translation>
+        </message>
+        <message>
             <source>The component that was measured, and how it was modelled (JSON)</source>
             <translation>Das gemessene Bauteil und wie es modelliert wurde (JSON)</translation>
         </message>
@@ -252,6 +372,18 @@
             <translation>Dicke C des Blatts einschließlich Dichtleiste</translation>
         </message>
         <message>
+            <source>Thickness of the inner layer where the rule is 'fixed'</source>
+            <translation>Dicke der inneren Lage, wenn die Regel 'fixed' (fest) ist</translation>
+        </message>
+        <message>
+            <source>Thickness of the second layer, 0 for none</source>
+            <translation>Dicke der zweiten Lage, 0 für keine</translation>
+        </message>
+        <message>
+            <source>Thickness of the sheet metal, 0: by the finished diameter after DIN 4140</source>
+            <translation>Dicke des Blechs, 0: nach dem fertigen Durchmesser gemäß DIN 4140</translation>
+        </message>
+        <message>
             <source>Type of EN 1092-1 (01 plate, 05 blind, 11 weld neck, ...)</source>
             <translation>Typ nach EN 1092-1 (01 glatt, 05 blind, 11 Vorschweiß, ...)</translation>
         </message>
@@ -264,12 +396,40 @@
             <translation>Bauart der Norm; ihre Wahl bestimmt den Biegeradius</translation>
         </message>
         <message>
+            <source>Up to this distance two flange faces are taken for a valve's</source>
+            <translation>Bis zu diesem Abstand gelten zwei Dichtflächen als die einer Armatur</translation>
+        </message>
+        <message>
             <source>Version of this object's properties</source>
             <translation>Version der Eigenschaften dieses Objekts</translation>
         </message>
         <message>
             <source>Wall thickness; 0 where it is not known</source>
             <translation>Wanddicke; 0, wenn sie nicht bekannt ist</translation>
+        </message>
+        <message>
+            <source>What else is to be known</source>
+            <translation>Was sonst zu wissen ist</translation>
+        </message>
+        <message>
+            <source>What is added along the length seams</source>
+            <translation>Zugabe an den Längsnähten</translation>
+        </message>
+        <message>
+            <source>What is added between the pieces of a bend</source>
+            <translation>Zugabe zwischen den Segmenten eines Bogens</translation>
+        </message>
+        <message>
+            <source>What is added where a jacket goes over the next one</source>
+            <translation>Zugabe, wo ein Mantel über den nächsten greift</translation>
+        </message>
+        <message>
+            <source>What is closer to the finished surface is listed among the clashes</source>
+            <translation>Was der fertigen Oberfläche näher ist, steht unter den Kollisionen</translation>
+        </message>
+        <message>
+            <source>What is closer to the insulation than the minimum distance</source>
+            <translation>Was der Dämmung näher ist als der Mindestabstand</translation>
         </message>
         <message>
             <source>What is joined to a component follows when the component is changed</source>
@@ -282,6 +442,34 @@
         <message>
             <source>What the colours of the components say</source>
             <translation>Was die Farben der Bauteile aussagen</translation>
+        </message>
+        <message>
+            <source>What the inner layer is made of</source>
+            <translation>Woraus die innere Lage besteht</translation>
+        </message>
+        <message>
+            <source>What the length seams of neighbours are turned against each other</source>
+            <translation>Um wie viel die Längsnähte von Nachbarn gegeneinander verdreht sind</translation>
+        </message>
+        <message>
+            <source>What the properties do not say, as a specification file has it (JSON)</source>
+            <translation>Was die Eigenschaften nicht sagen, wie in einer Spezifikationsdatei (JSON)</translation>
+        </message>
+        <message>
+            <source>What the rule 'heat loss' allows in W/m, and the rule 'surface temperature' in °C</source>
+            <translation>Was die Regel 'heat loss' (Wärmeverlust) in W/m und die Regel 'surface temperature' (Oberflächentemperatur) in °C zulässt</translation>
+        </message>
+        <message>
+            <source>What the second layer is made of</source>
+            <translation>Woraus die zweite Lage besteht</translation>
+        </message>
+        <message>
+            <source>What the sheet shrinks by for each bead</source>
+            <translation>Um wie viel das Blech je Sicke kürzer wird</translation>
+        </message>
+        <message>
+            <source>What the thickness of the inner layer follows from</source>
+            <translation>Woraus sich die Dicke der inneren Lage ergibt</translation>
         </message>
         <message>
             <source>Where station.json and the photographs were found last</source>
@@ -298,6 +486,10 @@
         <message>
             <source>Which ends are joined: component and number of its end</source>
             <translation type="vanished">Welche Enden verbunden sind: Bauteil und Nummer seines Endes</translation>
+        </message>
+        <message>
+            <source>Why components stay bare</source>
+            <translation>Warum Bauteile ungedämmt bleiben</translation>
         </message>
         <message>
             <source>station.json with the calibration of the cameras</source>
@@ -412,6 +604,17 @@
         </message>
     </context>
     <context>
+        <name>PipeWB_Insulation</name>
+        <message>
+            <source>Insulate pipes and fittings (all, or those selected): layers, jacket, boxes over flanges, heat saved, sheets to cut</source>
+            <translation>Rohre und Formteile dämmen (alle oder die ausgewählten): Lagen, Blechmantel, Kappen über Flanschen, gesparte Wärme, Zuschnitte</translation>
+        </message>
+        <message>
+            <source>Insulation</source>
+            <translation>Dämmung</translation>
+        </message>
+    </context>
+    <context>
         <name>PipeWB_MergeStations</name>
         <message>
             <source>Merge Stations</source>
@@ -492,6 +695,14 @@
             <translation>„{panel}“ ist noch offen</translation>
         </message>
         <message>
+            <source>... and {count} more</source>
+            <translation>... und {count} weitere</translation>
+        </message>
+        <message>
+            <source>0 indoors</source>
+            <translation>0 in Gebäuden</translation>
+        </message>
+        <message>
             <source>&lt;b&gt;Station {frame}&lt;/b&gt;: σ₀ {sigma0}, edges ± {sigma} px, redundancy {redundancy}, {count} iterations, {ended}</source>
             <translation>&lt;b&gt;Standpunkt {frame}&lt;/b&gt;: σ₀ {sigma0}, Kanten ± {sigma} px, Redundanz {redundancy}, {count} Iterationen, {ended}</translation>
         </message>
@@ -504,8 +715,16 @@
             <translation>Ein Klick ist</translation>
         </message>
         <message>
+            <source>A component that several insulations hold has the last one</source>
+            <translation>Ein Bauteil, das zu mehreren Dämmungen gehört, hat die letzte</translation>
+        </message>
+        <message>
             <source>A file that is there is replaced</source>
             <translation>Eine vorhandene Datei wird ersetzt</translation>
+        </message>
+        <message>
+            <source>A fixed one, or what it follows from: a table, the heat a metre may lose, ...</source>
+            <translation>Eine feste, oder woraus sie sich ergibt: eine Tabelle, die Wärme, die ein Meter verlieren darf, ...</translation>
         </message>
         <message>
             <source>A folder with tables of your own</source>
@@ -620,6 +839,10 @@
             <translation>An</translation>
         </message>
         <message>
+            <source>At most</source>
+            <translation>Höchstens</translation>
+        </message>
+        <message>
             <source>Bad</source>
             <translation>Schlecht</translation>
         </message>
@@ -632,8 +855,20 @@
             <translation>Biegeradius des gewählten Bogens: einer der Norm oder ein freier</translation>
         </message>
         <message>
+            <source>Bends</source>
+            <translation>Bögen</translation>
+        </message>
+        <message>
+            <source>Bends, flanges</source>
+            <translation>Bögen, Flansche</translation>
+        </message>
+        <message>
             <source>Between</source>
             <translation>Zwischen</translation>
+        </message>
+        <message>
+            <source>Between a flange's rim and the inside of its box</source>
+            <translation>Zwischen dem Rand eines Flansches und dem Inneren seiner Kappe</translation>
         </message>
         <message>
             <source>Between both after the adjustment of the stations' places; of pipes the larger of both ends</source>
@@ -648,6 +883,10 @@
             <translation>Zwischen den Dichtflächen zweier verschraubter Flansche</translation>
         </message>
         <message>
+            <source>Boxes of two half shells, or nothing</source>
+            <translation>Kappen aus zwei Halbschalen oder nichts</translation>
+        </message>
+        <message>
             <source>Brightens the dark parts to the right, darkens to the left</source>
             <translation>Nach rechts werden dunkle Stellen heller, nach links dunkler</translation>
         </message>
@@ -660,6 +899,14 @@
             <translation>Um</translation>
         </message>
         <message>
+            <source>CO2</source>
+            <translation>CO2</translation>
+        </message>
+        <message>
+            <source>CO2 kg/a</source>
+            <translation>CO2 kg/a</translation>
+        </message>
+        <message>
             <source>Cancel</source>
             <translation>Abbrechen</translation>
         </message>
@@ -670,6 +917,10 @@
         <message>
             <source>Cap</source>
             <translation>Kappe</translation>
+        </message>
+        <message>
+            <source>Change the insulation</source>
+            <translation>Dämmung ändern</translation>
         </message>
         <message>
             <source>Choose another type for {name}; its face stays where it is.</source>
@@ -698,6 +949,10 @@
         <message>
             <source>Clear</source>
             <translation>Verwerfen</translation>
+        </message>
+        <message>
+            <source>Clearance</source>
+            <translation>Luft</translation>
         </message>
         <message>
             <source>Click again, change the diameter, or step back with Esc.</source>
@@ -808,6 +1063,26 @@
             <translation>Kontrast der Fotos</translation>
         </message>
         <message>
+            <source>Cost/a</source>
+            <translation>Kosten/a</translation>
+        </message>
+        <message>
+            <source>Cut list</source>
+            <translation>Stückliste</translation>
+        </message>
+        <message>
+            <source>Cut list...</source>
+            <translation>Stückliste...</translation>
+        </message>
+        <message>
+            <source>Cut sheets</source>
+            <translation>Zuschnitte</translation>
+        </message>
+        <message>
+            <source>Cut sheets...</source>
+            <translation>Zuschnitte...</translation>
+        </message>
+        <message>
             <source>D {D:g} mm, C {C:g} mm, length {length:g} mm</source>
             <translation>D {D:g} mm, C {C:g} mm, Länge {length:g} mm</translation>
         </message>
@@ -834,6 +1109,14 @@
         <message>
             <source>Display</source>
             <translation>Anzeige</translation>
+        </message>
+        <message>
+            <source>Distance</source>
+            <translation>Abstand</translation>
+        </message>
+        <message>
+            <source>Distance [mm]</source>
+            <translation>Abstand [mm]</translation>
         </message>
         <message>
             <source>Distance mm</source>
@@ -872,6 +1155,10 @@
             <translation>Kanten innerhalb</translation>
         </message>
         <message>
+            <source>Efficiency</source>
+            <translation>Nutzungsgrad</translation>
+        </message>
+        <message>
             <source>Elbow</source>
             <translation>Bogen</translation>
         </message>
@@ -898,6 +1185,10 @@
         <message>
             <source>Ends that face each other and are not farther apart are joined</source>
             <translation>Enden, die einander gegenüberliegen und nicht weiter entfernt sind, werden verbunden</translation>
+        </message>
+        <message>
+            <source>Energy that is bought for it in a year</source>
+            <translation>Energie, die dafür im Jahr eingekauft wird</translation>
         </message>
         <message>
             <source>Enlarge the pixels around the pointer (L)</source>
@@ -960,6 +1251,10 @@
             <translation>Rohre werden gesucht</translation>
         </message>
         <message>
+            <source>First and last</source>
+            <translation>Erstes, letztes</translation>
+        </message>
+        <message>
             <source>First steps</source>
             <translation>Erste Schritte</translation>
         </message>
@@ -986,6 +1281,10 @@
         <message>
             <source>Flange: click on the straight edge of its rim</source>
             <translation>Flansch: auf die gerade Kante seines Rands klicken</translation>
+        </message>
+        <message>
+            <source>Flanges</source>
+            <translation>Flansche</translation>
         </message>
         <message>
             <source>Folder with the photographs</source>
@@ -1060,6 +1359,22 @@
             <translation>Überschrift</translation>
         </message>
         <message>
+            <source>Heat W</source>
+            <translation>Wärme W</translation>
+        </message>
+        <message>
+            <source>Heat delivered over energy bought: 0.9 of a boiler, 3 of a heat pump</source>
+            <translation>Gelieferte Wärme je eingekaufter Energie: 0,9 bei einem Kessel, 3 bei einer Wärmepumpe</translation>
+        </message>
+        <message>
+            <source>Heat that a metre of pipe may lose, or temperature of the surface</source>
+            <translation>Wärme, die ein Meter Rohr verlieren darf, oder Temperatur der Oberfläche</translation>
+        </message>
+        <message>
+            <source>Hours in a year</source>
+            <translation>Stunden im Jahr</translation>
+        </message>
+        <message>
             <source>How far from the contours edges are looked for: more where components lie beside their pictures</source>
             <translation>Wie weit von den Konturen nach Kanten gesucht wird: mehr, wo Bauteile neben ihren Bildern liegen</translation>
         </message>
@@ -1070,6 +1385,10 @@
         <message>
             <source>How far its middle moves; of pipes across their axis</source>
             <translation>Wie weit sich seine Mitte bewegt; bei Rohren quer zur Achse</translation>
+        </message>
+        <message>
+            <source>How long the first and the last piece of a bend are</source>
+            <translation>Wie lang das erste und das letzte Segment eines Bogens sind</translation>
         </message>
         <message>
             <source>How many parts of the processor are used at most</source>
@@ -1108,6 +1427,22 @@
             <translation>Im Standpunkt, der schon da war</translation>
         </message>
         <message>
+            <source>Insulate</source>
+            <translation>Dämmen</translation>
+        </message>
+        <message>
+            <source>Insulation</source>
+            <translation>Dämmung</translation>
+        </message>
+        <message>
+            <source>Insulation, a bare component or an obstacle</source>
+            <translation>Dämmung, ein ungedämmtes Bauteil oder ein Hindernis</translation>
+        </message>
+        <message>
+            <source>Jacket</source>
+            <translation>Mantel</translation>
+        </message>
+        <message>
             <source>Join ends up to</source>
             <translation>Enden verbinden bis</translation>
         </message>
@@ -1136,6 +1471,14 @@
             <translation>Größter Abstand {distance:.1f} mm.</translation>
         </message>
         <message>
+            <source>Layers</source>
+            <translation>Lagen</translation>
+        </message>
+        <message>
+            <source>Leave the specification's rules and obstacles away</source>
+            <translation>Die Regeln und Hindernisse der Spezifikation weglassen</translation>
+        </message>
+        <message>
             <source>Length</source>
             <translation>Länge</translation>
         </message>
@@ -1160,6 +1503,10 @@
             <translation>Das Foto wird geladen ...</translation>
         </message>
         <message>
+            <source>Longer by</source>
+            <translation>Länger um</translation>
+        </message>
+        <message>
             <source>Look how the stations lie to each other; the document stays as it is until you press OK</source>
             <translation>Suchen, wie die Standpunkte zueinander liegen; das Dokument bleibt, wie es ist, bis Sie OK drücken</translation>
         </message>
@@ -1178,6 +1525,14 @@
         <message>
             <source>Loupe</source>
             <translation>Lupe</translation>
+        </message>
+        <message>
+            <source>Material</source>
+            <translation>Material</translation>
+        </message>
+        <message>
+            <source>Material of a layer around the first</source>
+            <translation>Material einer Lage um die erste</translation>
         </message>
         <message>
             <source>Measure a pipe</source>
@@ -1210,6 +1565,10 @@
         <message>
             <source>Measuring ...</source>
             <translation>Wird gemessen ...</translation>
+        </message>
+        <message>
+            <source>Medium</source>
+            <translation>Medium</translation>
         </message>
         <message>
             <source>Merge Stations</source>
@@ -1252,12 +1611,36 @@
             <translation>Hinweis</translation>
         </message>
         <message>
+            <source>Of a segmented bend</source>
+            <translation>Eines Segmentbogens</translation>
+        </message>
+        <message>
+            <source>Of operation</source>
+            <translation>In Betrieb</translation>
+        </message>
+        <message>
+            <source>Of straight pieces of sheet metal, or round as foam shells are</source>
+            <translation>Aus geraden Blechsegmenten oder rund wie Schaumschalen</translation>
+        </message>
+        <message>
             <source>Of the axes, the larger of both ends of what they have in common; of surfaces the shortest</source>
             <translation>Der Achsen, der größere an beiden Enden des gemeinsamen Stücks; bei Flächen der kürzeste</translation>
         </message>
         <message>
             <source>Of the distances between contours and edges</source>
             <translation>Der Abstände zwischen Konturen und Kanten</translation>
+        </message>
+        <message>
+            <source>Of the energy that is bought</source>
+            <translation>Der eingekauften Energie</translation>
+        </message>
+        <message>
+            <source>Of the finished surfaces; negative where they overlap</source>
+            <translation>Der fertigen Oberflächen; negativ, wo sie sich überschneiden</translation>
+        </message>
+        <message>
+            <source>Of the inner layer</source>
+            <translation>Der inneren Lage</translation>
         </message>
         <message>
             <source>Of the report's texts</source>
@@ -1270,6 +1653,10 @@
         <message>
             <source>Open its photo window</source>
             <translation>Sein Fotofenster öffnen</translation>
+        </message>
+        <message>
+            <source>Operation</source>
+            <translation>Betrieb</translation>
         </message>
         <message>
             <source>Otherwise selected components follow their own edges, and gaps may open to their neighbours</source>
@@ -1312,6 +1699,10 @@
             <translation>Markierungen</translation>
         </message>
         <message>
+            <source>Pieces</source>
+            <translation>Segmente</translation>
+        </message>
+        <message>
             <source>Pipe</source>
             <translation>Rohr</translation>
         </message>
@@ -1346,6 +1737,14 @@
         <message>
             <source>Poor up to</source>
             <translation>Schwach bis</translation>
+        </message>
+        <message>
+            <source>Preview</source>
+            <translation>Vorschau</translation>
+        </message>
+        <message>
+            <source>Price</source>
+            <translation>Preis</translation>
         </message>
         <message>
             <source>Put all that are ticked into the document</source>
@@ -1390,6 +1789,10 @@
         <message>
             <source>Radius</source>
             <translation>Radius</translation>
+        </message>
+        <message>
+            <source>Read layers, rules for single components, obstacles</source>
+            <translation>Lagen, Regeln für einzelne Bauteile und Hindernisse einlesen</translation>
         </message>
         <message>
             <source>Reconstruct picks</source>
@@ -1448,6 +1851,10 @@
             <translation>Runde Außenflächen von Körpern gelten als Rohre; zu einer Fläche wird nur der kürzeste Abstand gemessen</translation>
         </message>
         <message>
+            <source>Round up to what can be bought</source>
+            <translation>Auf lieferbare Dicke aufrunden</translation>
+        </message>
+        <message>
             <source>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</source>
             <translation>Stränge, die fast so liegen, gelten mit wenig Gewicht als solche: Wo die Fotos etwas anderes sagen, entscheiden sie</translation>
         </message>
@@ -1472,6 +1879,10 @@
             <translation>Suchband</translation>
         </message>
         <message>
+            <source>Second layer</source>
+            <translation>Zweite Lage</translation>
+        </message>
+        <message>
             <source>Select the solids in the tree or in 3D.</source>
             <translation>Wählen Sie die Körper im Baum oder in 3D aus.</translation>
         </message>
@@ -1488,12 +1899,24 @@
             <translation>Aufgesetzter Abzweig</translation>
         </message>
         <message>
+            <source>Sheet</source>
+            <translation>Blech</translation>
+        </message>
+        <message>
+            <source>Sheet metal around the insulation</source>
+            <translation>Blech um die Dämmung</translation>
+        </message>
+        <message>
             <source>Shift mm</source>
             <translation>Versatz mm</translation>
         </message>
         <message>
             <source>Show one pixel of the photograph as one of the screen (Ctrl+1)</source>
             <translation>Ein Pixel des Fotos als eines des Bildschirms zeigen (Strg+1)</translation>
+        </message>
+        <message>
+            <source>Show the insulation in 3D; the document stays as it is</source>
+            <translation>Die Dämmung in 3D zeigen; das Dokument bleibt, wie es ist</translation>
         </message>
         <message>
             <source>Show the next pipe of the list (digits choose directly)</source>
@@ -1530,6 +1953,18 @@
         <message>
             <source>Something else is still being computed; wait for its end or cancel it</source>
             <translation>Es wird noch etwas anderes berechnet; warten Sie das Ende ab oder brechen Sie es ab</translation>
+        </message>
+        <message>
+            <source>Specification of insulation</source>
+            <translation>Spezifikation der Dämmung</translation>
+        </message>
+        <message>
+            <source>Specification {name}: {rules} rules, {obstacles} obstacles</source>
+            <translation>Spezifikation {name}: {rules} Regeln, {obstacles} Hindernisse</translation>
+        </message>
+        <message>
+            <source>Specification...</source>
+            <translation>Spezifikation...</translation>
         </message>
         <message>
             <source>Standard</source>
@@ -1584,6 +2019,10 @@
             <translation>Oberfläche ausgewählter Körper</translation>
         </message>
         <message>
+            <source>Surroundings</source>
+            <translation>Umgebung</translation>
+        </message>
+        <message>
             <source>Tables of your own</source>
             <translation>Eigene Tabellen</translation>
         </message>
@@ -1606,6 +2045,14 @@
         <message>
             <source>Tees, Reducers and Caps</source>
             <translation>T-Stücke, Reduzierstücke und Kappen</translation>
+        </message>
+        <message>
+            <source>Temperature of the air around</source>
+            <translation>Temperatur der Luft umher</translation>
+        </message>
+        <message>
+            <source>Temperature of what flows</source>
+            <translation>Temperatur dessen, was fließt</translation>
         </message>
         <message>
             <source>That is all. Import photographs of your own with Import Station.</source>
@@ -1650,6 +2097,10 @@
         <message>
             <source>The model as designed</source>
             <translation>Das geplante Modell</translation>
+        </message>
+        <message>
+            <source>The next thickness that merchants keep in stock</source>
+            <translation>Die nächste Dicke, die der Handel vorrätig hat</translation>
         </message>
         <message>
             <source>The photo window shows the station's photographs side by side. Turn the wheel to zoom at the pointer, drag with the middle button to move the photographs.</source>
@@ -1704,6 +2155,18 @@
             <translation>Dickere Rohre werden nicht gesucht</translation>
         </message>
         <message>
+            <source>Thickness</source>
+            <translation>Dicke</translation>
+        </message>
+        <message>
+            <source>Thickness of the second layer</source>
+            <translation>Dicke der zweiten Lage</translation>
+        </message>
+        <message>
+            <source>Thickness of the sheet metal</source>
+            <translation>Dicke des Blechs</translation>
+        </message>
+        <message>
             <source>Thinner pipes are not looked for</source>
             <translation>Dünnere Rohre werden nicht gesucht</translation>
         </message>
@@ -1716,8 +2179,16 @@
             <translation>Die Rohre ab dieser Sicherheit ankreuzen: wievielmal wahrscheinlicher als Zufall sie sind, als Logarithmus</translation>
         </message>
         <message>
+            <source>Tight bends</source>
+            <translation>Enge Bögen</translation>
+        </message>
+        <message>
             <source>Tolerances</source>
             <translation>Toleranzen</translation>
+        </message>
+        <message>
+            <source>Too close</source>
+            <translation>Zu nah</translation>
         </message>
         <message>
             <source>Turn °</source>
@@ -1768,12 +2239,32 @@
             <translation>Was nicht passt</translation>
         </message>
         <message>
+            <source>What is closer to the finished surface is listed as a clash</source>
+            <translation>Was der fertigen Oberfläche näher ist, gilt als Kollision</translation>
+        </message>
+        <message>
+            <source>What is done where the insulation is too thick for a bend's radius</source>
+            <translation>Was geschieht, wo die Dämmung für den Radius eines Bogens zu dick ist</translation>
+        </message>
+        <message>
             <source>What is looked for</source>
             <translation>Was gesucht wird</translation>
         </message>
         <message>
+            <source>What it sets free; a dash where the share of a kWh is not known</source>
+            <translation>Was sie freisetzt; ein Strich, wo der Anteil einer kWh nicht bekannt ist</translation>
+        </message>
+        <message>
+            <source>What that energy costs; a dash where its price is not known</source>
+            <translation>Was diese Energie kostet; ein Strich, wo ihr Preis nicht bekannt ist</translation>
+        </message>
+        <message>
             <source>What the colours of the contours tell</source>
             <translation>Was die Farben der Konturen aussagen</translation>
+        </message>
+        <message>
+            <source>What the first and the last piece reach over the pipe</source>
+            <translation>Was das erste und das letzte Segment über das Rohr reichen</translation>
         </message>
         <message>
             <source>What they share</source>
@@ -1804,12 +2295,32 @@
             <translation>Welche Durchmesser möglich sind: die der Norm, beliebige oder ein bestimmter</translation>
         </message>
         <message>
+            <source>While in operation</source>
+            <translation>Im Betrieb</translation>
+        </message>
+        <message>
+            <source>Wind</source>
+            <translation>Wind</translation>
+        </message>
+        <message>
             <source>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</source>
             <translation>Bei einem Biegeradius von {radius:g} mm bliebe von einem Rohr daneben nichts übrig.</translation>
         </message>
         <message>
             <source>Within the standard's tolerances</source>
             <translation>Innerhalb der Toleranzen der Norm</translation>
+        </message>
+        <message>
+            <source>Without it</source>
+            <translation>Ohne sie</translation>
+        </message>
+        <message>
+            <source>Write the flat parts of the jacket, laid out on sheets</source>
+            <translation>Die Abwicklungen des Blechmantels schreiben, auf Tafeln verteilt</translation>
+        </message>
+        <message>
+            <source>Write the list of parts, sheets and material</source>
+            <translation>Die Liste der Teile, Tafeln und des Materials schreiben</translation>
         </message>
         <message>
             <source>Write the pipeline as IFC for BIM, as STEP solids or as a table.</source>
@@ -1856,6 +2367,22 @@
             <translation>wie unten eingegeben</translation>
         </message>
         <message>
+            <source>as it is ({count})</source>
+            <translation>wie bisher ({count})</translation>
+        </message>
+        <message>
+            <source>as long as the others</source>
+            <translation>so lang wie die anderen</translation>
+        </message>
+        <message>
+            <source>as the specification says</source>
+            <translation>wie in der Spezifikation</translation>
+        </message>
+        <message>
+            <source>bare</source>
+            <translation>ungedämmt</translation>
+        </message>
+        <message>
             <source>beyond</source>
             <translation>darüber</translation>
         </message>
@@ -1864,12 +2391,32 @@
             <translation>blind</translation>
         </message>
         <message>
+            <source>boxes</source>
+            <translation>Kappen</translation>
+        </message>
+        <message>
+            <source>by DIN 4140</source>
+            <translation>nach DIN 4140</translation>
+        </message>
+        <message>
+            <source>by heat loss</source>
+            <translation>nach Wärmeverlust</translation>
+        </message>
+        <message>
             <source>by kind</source>
             <translation>nach Art</translation>
         </message>
         <message>
             <source>by quality</source>
             <translation>nach Güte</translation>
+        </message>
+        <message>
+            <source>by rule</source>
+            <translation>nach Regel</translation>
+        </message>
+        <message>
+            <source>by surface temperature</source>
+            <translation>nach Oberflächentemperatur</translation>
         </message>
         <message>
             <source>choose the model as designed</source>
@@ -1936,12 +2483,20 @@
             <translation>frei</translation>
         </message>
         <message>
+            <source>give at least one layer</source>
+            <translation>geben Sie mindestens eine Lage an</translation>
+        </message>
+        <message>
             <source>give one</source>
             <translation>geben Sie einen an</translation>
         </message>
         <message>
             <source>grey {value}</source>
             <translation>Grauwert {value}</translation>
+        </message>
+        <message>
+            <source>half as long as the others</source>
+            <translation>halb so lang wie die anderen</translation>
         </message>
         <message>
             <source>is</source>
@@ -1956,12 +2511,20 @@
             <translation>seine Fotos fehlen</translation>
         </message>
         <message>
+            <source>kWh/a</source>
+            <translation>kWh/a</translation>
+        </message>
+        <message>
             <source>last seen in {folder}</source>
             <translation>zuletzt in {folder}</translation>
         </message>
         <message>
             <source>left out</source>
             <translation>ausgeschlossen</translation>
+        </message>
+        <message>
+            <source>longer than the half</source>
+            <translation>länger als die Hälfte</translation>
         </message>
         <message>
             <source>loose plate</source>
@@ -1984,8 +2547,16 @@
             <translation>kein Körper ist ausgewählt</translation>
         </message>
         <message>
+            <source>none</source>
+            <translation>keine</translation>
+        </message>
+        <message>
             <source>not determined</source>
             <translation>nicht bestimmt</translation>
+        </message>
+        <message>
+            <source>not known</source>
+            <translation>nicht bekannt</translation>
         </message>
         <message>
             <source>not trusted</source>
@@ -1996,8 +2567,16 @@
             <translation>es sind nicht zwei Bauteile zweier Standpunkte ausgewählt</translation>
         </message>
         <message>
+            <source>nothing is insulated like this</source>
+            <translation>so wird nichts gedämmt</translation>
+        </message>
+        <message>
             <source>nothing was put together yet</source>
             <translation>es wurde noch nichts zusammengeführt</translation>
+        </message>
+        <message>
+            <source>now</source>
+            <translation>jetzt</translation>
         </message>
         <message>
             <source>of the standard</source>
@@ -2010,6 +2589,10 @@
         <message>
             <source>open one, or import a station first</source>
             <translation>öffnen Sie eines oder importieren Sie zuerst einen Standpunkt</translation>
+        </message>
+        <message>
+            <source>planning the insulation</source>
+            <translation>die Dämmung wird geplant</translation>
         </message>
         <message>
             <source>plate</source>
@@ -2036,8 +2619,24 @@
             <translation>wird gelesen ...</translation>
         </message>
         <message>
+            <source>refuse</source>
+            <translation>ablehnen</translation>
+        </message>
+        <message>
+            <source>runs of the selected ({count})</source>
+            <translation>Stränge der ausgewählten ({count})</translation>
+        </message>
+        <message>
+            <source>saved</source>
+            <translation>gespart</translation>
+        </message>
+        <message>
             <source>say where they are in its photo window</source>
             <translation>geben Sie in seinem Fotofenster an, wo sie sind</translation>
+        </message>
+        <message>
+            <source>segmented</source>
+            <translation>aus Segmenten</translation>
         </message>
         <message>
             <source>select one of each (Ctrl and click)</source>
@@ -2056,6 +2655,10 @@
             <translation>wählen Sie welche aus oder exportieren Sie alle</translation>
         </message>
         <message>
+            <source>select some, or insulate all</source>
+            <translation>wählen Sie welche aus oder dämmen Sie alle</translation>
+        </message>
+        <message>
             <source>select the solids as designed in the tree or in 3D</source>
             <translation>wählen Sie die geplanten Körper im Baum oder in 3D aus</translation>
         </message>
@@ -2070,6 +2673,10 @@
         <message>
             <source>slip-on</source>
             <translation>Überschieb</translation>
+        </message>
+        <message>
+            <source>smooth</source>
+            <translation>rund</translation>
         </message>
         <message>
             <source>there is no IFC file</source>
@@ -2092,6 +2699,14 @@
             <translation>Gewinde</translation>
         </message>
         <message>
+            <source>to</source>
+            <translation>an</translation>
+        </message>
+        <message>
+            <source>two pieces with a mitre</source>
+            <translation>zwei Stücke auf Gehrung</translation>
+        </message>
+        <message>
             <source>up to</source>
             <translation>bis</translation>
         </message>
@@ -2108,8 +2723,16 @@
             <translation>Vorschweiß</translation>
         </message>
         <message>
+            <source>with this insulation</source>
+            <translation>mit dieser Dämmung</translation>
+        </message>
+        <message>
             <source>within their tolerances</source>
             <translation>innerhalb ihrer Toleranzen</translation>
+        </message>
+        <message>
+            <source>writing {path}</source>
+            <translation>{path} wird geschrieben</translation>
         </message>
         <message>
             <source>written: {path}</source>
@@ -2122,6 +2745,10 @@
         <message>
             <source>{count} beyond</source>
             <translation>{count} darüber</translation>
+        </message>
+        <message>
+            <source>{count} components insulated</source>
+            <translation>{count} Bauteile gedämmt</translation>
         </message>
         <message>
             <source>{count} found. Click on one to choose it.</source>
@@ -2142,6 +2769,10 @@
         <message>
             <source>{diameter:g} mm, as entered</source>
             <translation>{diameter:g} mm, wie eingegeben</translation>
+        </message>
+        <message>
+            <source>{pieces} pieces over {length:.1f} m: {volume:.3f} m³ of insulation, {area:.2f} m² of jacket</source>
+            <translation>{pieces} Stücke auf {length:.1f} m: {volume:.3f} m³ Dämmung, {area:.2f} m² Mantel</translation>
         </message>
         <message>
             <source>{station} ({count} components)</source>

@@ -8,8 +8,36 @@
             <translation>A fitting (tee) or a branch welded on (set-on)</translation>
         </message>
         <message>
+            <source>Added to the bolts' length between flange and insulation, so that bolts can be pulled</source>
+            <translation>Added to the bolts' length between flange and insulation, so that bolts can be pulled</translation>
+        </message>
+        <message>
+            <source>Bends of straight pieces (segmented) or round ones, as of foam shells (smooth)</source>
+            <translation>Bends of straight pieces (segmented) or round ones, as of foam shells (smooth)</translation>
+        </message>
+        <message>
+            <source>Bends that are too tight for the thickness: two pieces with a mitre, or refuse</source>
+            <translation>Bends that are too tight for the thickness: two pieces with a mitre, or refuse</translation>
+        </message>
+        <message>
+            <source>Between a flange's rim and the inside of its box</source>
+            <translation>Between a flange's rim and the inside of its box</translation>
+        </message>
+        <message>
             <source>Between the run's direction and the branch</source>
             <translation>Between the run's direction and the branch</translation>
+        </message>
+        <message>
+            <source>Boxes of two half shells over flanges, or bare flanges</source>
+            <translation>Boxes of two half shells over flanges, or bare flanges</translation>
+        </message>
+        <message>
+            <source>By what the first and the last piece are longer than the half</source>
+            <translation>By what the first and the last piece are longer than the half</translation>
+        </message>
+        <message>
+            <source>CO2 of a kWh of energy in kg, 0: not known</source>
+            <translation>CO2 of a kWh of energy in kg, 0: not known</translation>
         </message>
         <message>
             <source>Change of direction</source>
@@ -18,6 +46,10 @@
         <message>
             <source>Class that FreeCAD's own BIM exporter gives it</source>
             <translation>Class that FreeCAD's own BIM exporter gives it</translation>
+        </message>
+        <message>
+            <source>Coverings: straight ones, bends, boxes, ...</source>
+            <translation>Coverings: straight ones, bends, boxes, ...</translation>
         </message>
         <message>
             <source>Diameter D of the plate</source>
@@ -40,12 +72,32 @@
             <translation>Diameter of the raised face; 0 where it is not known</translation>
         </message>
         <message>
+            <source>Diameter of the rivet holes</source>
+            <translation>Diameter of the rivet holes</translation>
+        </message>
+        <message>
+            <source>Digest of what the shape was made from</source>
+            <translation>Digest of what the shape was made from</translation>
+        </message>
+        <message>
+            <source>Digests of the shape's parts</source>
+            <translation>Digests of the shape's parts</translation>
+        </message>
+        <message>
+            <source>Distance of the rivet holes along seams, 0 for none</source>
+            <translation>Distance of the rivet holes along seams, 0 for none</translation>
+        </message>
+        <message>
             <source>Draw the bolts, through a partner of the same thickness</source>
             <translation>Draw the bolts, through a partner of the same thickness</translation>
         </message>
         <message>
             <source>Files of the photographs, relative to the document</source>
             <translation>Files of the photographs, relative to the document</translation>
+        </message>
+        <message>
+            <source>First and last piece of a bend: half as long as the others, equal, or longer than the half</source>
+            <translation>First and last piece of a bend: half as long as the others, equal, or longer than the half</translation>
         </message>
         <message>
             <source>Flanges of the same dimensions, which images cannot tell apart</source>
@@ -72,8 +124,28 @@
             <translation>From the weld end to the top</translation>
         </message>
         <message>
+            <source>Heat delivered over energy bought</source>
+            <translation>Heat delivered over energy bought</translation>
+        </message>
+        <message>
+            <source>Heat loss in W with the insulation, bare components included</source>
+            <translation>Heat loss in W with the insulation, bare components included</translation>
+        </message>
+        <message>
+            <source>Heat loss in W without insulation; 0 where the medium's temperature is not known</source>
+            <translation>Heat loss in W without insulation; 0 where the medium's temperature is not known</translation>
+        </message>
+        <message>
             <source>Height of the raised face</source>
             <translation>Height of the raised face</translation>
+        </message>
+        <message>
+            <source>Hours of operation in a year</source>
+            <translation>Hours of operation in a year</translation>
+        </message>
+        <message>
+            <source>How far a box reaches over the pipe's jacket</source>
+            <translation>How far a box reaches over the pipe's jacket</translation>
         </message>
         <message>
             <source>How well the standard's dimensions are sourced</source>
@@ -96,6 +168,10 @@
             <translation>Keep the photographs inside the document, which makes its file larger</translation>
         </message>
         <message>
+            <source>Layers around the second one, outwards, each like '40 mm mineral wool'</source>
+            <translation>Layers around the second one, outwards, each like '40 mm mineral wool'</translation>
+        </message>
+        <message>
             <source>Length along the axis</source>
             <translation>Length along the axis</translation>
         </message>
@@ -106,6 +182,10 @@
         <message>
             <source>Level of accuracy (USIBD)</source>
             <translation>Level of accuracy (USIBD)</translation>
+        </message>
+        <message>
+            <source>Mark the beads along the round edges</source>
+            <translation>Mark the beads along the round edges</translation>
         </message>
         <message>
             <source>Name in exchange files</source>
@@ -132,8 +212,16 @@
             <translation>Numbers of the ends that are joined to the own ones</translation>
         </message>
         <message>
+            <source>Of all layers, without the jacket</source>
+            <translation>Of all layers, without the jacket</translation>
+        </message>
+        <message>
             <source>Of the narrow end across the axis, where it is eccentric</source>
             <translation>Of the narrow end across the axis, where it is eccentric</translation>
+        </message>
+        <message>
+            <source>Outer surface of the jacket, without overlaps</source>
+            <translation>Outer surface of the jacket, without overlaps</translation>
         </message>
         <message>
             <source>Outside diameter</source>
@@ -148,6 +236,14 @@
             <translation>Outside diameter of the narrow end</translation>
         </message>
         <message>
+            <source>Pieces of a segmented bend, 0: by the rule</source>
+            <translation>Pieces of a segmented bend, 0: by the rule</translation>
+        </message>
+        <message>
+            <source>Pipes and fittings that are insulated</source>
+            <translation>Pipes and fittings that are insulated</translation>
+        </message>
+        <message>
             <source>Pressure class as a number</source>
             <translation>Pressure class as a number</translation>
         </message>
@@ -156,12 +252,24 @@
             <translation>Pressure class of the standards</translation>
         </message>
         <message>
+            <source>Price of a kWh of energy, 0: not known</source>
+            <translation>Price of a kWh of energy, 0: not known</translation>
+        </message>
+        <message>
             <source>RMS distance to the image edges in pixels (Eq. 4)</source>
             <translation>RMS distance to the image edges in pixels (Eq. 4)</translation>
         </message>
         <message>
             <source>Radius of the bent axis</source>
             <translation>Radius of the bent axis</translation>
+        </message>
+        <message>
+            <source>Sheet metal around the insulation</source>
+            <translation>Sheet metal around the insulation</translation>
+        </message>
+        <message>
+            <source>Speed of the wind, 0 indoors</source>
+            <translation>Speed of the wind, 0 indoors</translation>
         </message>
         <message>
             <source>Standard deviation of the direction</source>
@@ -204,6 +312,18 @@
             <translation>Stations that measured the components</translation>
         </message>
         <message>
+            <source>Take the next thickness that can be bought where it follows from a rule</source>
+            <translation>Take the next thickness that can be bought where it follows from a rule</translation>
+        </message>
+        <message>
+            <source>Temperature of the medium in °C, -273.15: not known</source>
+            <translation>Temperature of the medium in °C, -273.15: not known</translation>
+        </message>
+        <message>
+            <source>Temperature of the surroundings in °C</source>
+            <translation>Temperature of the surroundings in °C</translation>
+        </message>
+        <message>
             <source>The component that was measured, and how it was modelled (JSON)</source>
             <translation>The component that was measured, and how it was modelled (JSON)</translation>
         </message>
@@ -236,6 +356,18 @@
             <translation>Thickness C of the plate, raised face included</translation>
         </message>
         <message>
+            <source>Thickness of the inner layer where the rule is 'fixed'</source>
+            <translation>Thickness of the inner layer where the rule is 'fixed'</translation>
+        </message>
+        <message>
+            <source>Thickness of the second layer, 0 for none</source>
+            <translation>Thickness of the second layer, 0 for none</translation>
+        </message>
+        <message>
+            <source>Thickness of the sheet metal, 0: by the finished diameter after DIN 4140</source>
+            <translation>Thickness of the sheet metal, 0: by the finished diameter after DIN 4140</translation>
+        </message>
+        <message>
             <source>Type of EN 1092-1 (01 plate, 05 blind, 11 weld neck, ...)</source>
             <translation>Type of EN 1092-1 (01 plate, 05 blind, 11 weld neck, ...)</translation>
         </message>
@@ -244,12 +376,40 @@
             <translation>Type of the standard; choosing one sets the bend radius</translation>
         </message>
         <message>
+            <source>Up to this distance two flange faces are taken for a valve's</source>
+            <translation>Up to this distance two flange faces are taken for a valve's</translation>
+        </message>
+        <message>
             <source>Version of this object's properties</source>
             <translation>Version of this object's properties</translation>
         </message>
         <message>
             <source>Wall thickness; 0 where it is not known</source>
             <translation>Wall thickness; 0 where it is not known</translation>
+        </message>
+        <message>
+            <source>What else is to be known</source>
+            <translation>What else is to be known</translation>
+        </message>
+        <message>
+            <source>What is added along the length seams</source>
+            <translation>What is added along the length seams</translation>
+        </message>
+        <message>
+            <source>What is added between the pieces of a bend</source>
+            <translation>What is added between the pieces of a bend</translation>
+        </message>
+        <message>
+            <source>What is added where a jacket goes over the next one</source>
+            <translation>What is added where a jacket goes over the next one</translation>
+        </message>
+        <message>
+            <source>What is closer to the finished surface is listed among the clashes</source>
+            <translation>What is closer to the finished surface is listed among the clashes</translation>
+        </message>
+        <message>
+            <source>What is closer to the insulation than the minimum distance</source>
+            <translation>What is closer to the insulation than the minimum distance</translation>
         </message>
         <message>
             <source>What is joined to a component follows when the component is changed</source>
@@ -264,6 +424,34 @@
             <translation>What the colours of the components say</translation>
         </message>
         <message>
+            <source>What the inner layer is made of</source>
+            <translation>What the inner layer is made of</translation>
+        </message>
+        <message>
+            <source>What the length seams of neighbours are turned against each other</source>
+            <translation>What the length seams of neighbours are turned against each other</translation>
+        </message>
+        <message>
+            <source>What the properties do not say, as a specification file has it (JSON)</source>
+            <translation>What the properties do not say, as a specification file has it (JSON)</translation>
+        </message>
+        <message>
+            <source>What the rule 'heat loss' allows in W/m, and the rule 'surface temperature' in °C</source>
+            <translation>What the rule 'heat loss' allows in W/m, and the rule 'surface temperature' in °C</translation>
+        </message>
+        <message>
+            <source>What the second layer is made of</source>
+            <translation>What the second layer is made of</translation>
+        </message>
+        <message>
+            <source>What the sheet shrinks by for each bead</source>
+            <translation>What the sheet shrinks by for each bead</translation>
+        </message>
+        <message>
+            <source>What the thickness of the inner layer follows from</source>
+            <translation>What the thickness of the inner layer follows from</translation>
+        </message>
+        <message>
             <source>Where station.json and the photographs were found last</source>
             <translation>Where station.json and the photographs were found last</translation>
         </message>
@@ -274,6 +462,10 @@
         <message>
             <source>Where the station's level frame lies in the document's frame</source>
             <translation>Where the station's level frame lies in the document's frame</translation>
+        </message>
+        <message>
+            <source>Why components stay bare</source>
+            <translation>Why components stay bare</translation>
         </message>
         <message>
             <source>station.json with the calibration, relative to the document</source>
@@ -380,6 +572,17 @@
         </message>
     </context>
     <context>
+        <name>PipeWB_Insulation</name>
+        <message>
+            <source>Insulate pipes and fittings (all, or those selected): layers, jacket, boxes over flanges, heat saved, sheets to cut</source>
+            <translation>Insulate pipes and fittings (all, or those selected): layers, jacket, boxes over flanges, heat saved, sheets to cut</translation>
+        </message>
+        <message>
+            <source>Insulation</source>
+            <translation>Insulation</translation>
+        </message>
+    </context>
+    <context>
         <name>PipeWB_MergeStations</name>
         <message>
             <source>Merge Stations</source>
@@ -456,6 +659,14 @@
             <translation>'{panel}' is still open</translation>
         </message>
         <message>
+            <source>... and {count} more</source>
+            <translation>... and {count} more</translation>
+        </message>
+        <message>
+            <source>0 indoors</source>
+            <translation>0 indoors</translation>
+        </message>
+        <message>
             <source>&lt;b&gt;Station {frame}&lt;/b&gt;: σ₀ {sigma0}, edges ± {sigma} px, redundancy {redundancy}, {count} iterations, {ended}</source>
             <translation>&lt;b&gt;Station {frame}&lt;/b&gt;: σ₀ {sigma0}, edges ± {sigma} px, redundancy {redundancy}, {count} iterations, {ended}</translation>
         </message>
@@ -468,8 +679,16 @@
             <translation>A click is</translation>
         </message>
         <message>
+            <source>A component that several insulations hold has the last one</source>
+            <translation>A component that several insulations hold has the last one</translation>
+        </message>
+        <message>
             <source>A file that is there is replaced</source>
             <translation>A file that is there is replaced</translation>
+        </message>
+        <message>
+            <source>A fixed one, or what it follows from: a table, the heat a metre may lose, ...</source>
+            <translation>A fixed one, or what it follows from: a table, the heat a metre may lose, ...</translation>
         </message>
         <message>
             <source>A folder with tables of your own</source>
@@ -584,6 +803,10 @@
             <translation>At</translation>
         </message>
         <message>
+            <source>At most</source>
+            <translation>At most</translation>
+        </message>
+        <message>
             <source>Bad</source>
             <translation>Bad</translation>
         </message>
@@ -596,8 +819,20 @@
             <translation>Bend radius of the chosen elbow: one of the standard, or a free one</translation>
         </message>
         <message>
+            <source>Bends</source>
+            <translation>Bends</translation>
+        </message>
+        <message>
+            <source>Bends, flanges</source>
+            <translation>Bends, flanges</translation>
+        </message>
+        <message>
             <source>Between</source>
             <translation>Between</translation>
+        </message>
+        <message>
+            <source>Between a flange's rim and the inside of its box</source>
+            <translation>Between a flange's rim and the inside of its box</translation>
         </message>
         <message>
             <source>Between both after the adjustment of the stations' places; of pipes the larger of both ends</source>
@@ -612,6 +847,10 @@
             <translation>Between the faces of two flanges that are bolted together</translation>
         </message>
         <message>
+            <source>Boxes of two half shells, or nothing</source>
+            <translation>Boxes of two half shells, or nothing</translation>
+        </message>
+        <message>
             <source>Brightens the dark parts to the right, darkens to the left</source>
             <translation>Brightens the dark parts to the right, darkens to the left</translation>
         </message>
@@ -624,6 +863,14 @@
             <translation>By</translation>
         </message>
         <message>
+            <source>CO2</source>
+            <translation>CO2</translation>
+        </message>
+        <message>
+            <source>CO2 kg/a</source>
+            <translation>CO2 kg/a</translation>
+        </message>
+        <message>
             <source>Cancel</source>
             <translation>Cancel</translation>
         </message>
@@ -634,6 +881,10 @@
         <message>
             <source>Cap</source>
             <translation>Cap</translation>
+        </message>
+        <message>
+            <source>Change the insulation</source>
+            <translation>Change the insulation</translation>
         </message>
         <message>
             <source>Choose another type for {name}; its face stays where it is.</source>
@@ -662,6 +913,10 @@
         <message>
             <source>Clear</source>
             <translation>Clear</translation>
+        </message>
+        <message>
+            <source>Clearance</source>
+            <translation>Clearance</translation>
         </message>
         <message>
             <source>Click again, change the diameter, or step back with Esc.</source>
@@ -764,6 +1019,26 @@
             <translation>Contrast of the photographs</translation>
         </message>
         <message>
+            <source>Cost/a</source>
+            <translation>Cost/a</translation>
+        </message>
+        <message>
+            <source>Cut list</source>
+            <translation>Cut list</translation>
+        </message>
+        <message>
+            <source>Cut list...</source>
+            <translation>Cut list...</translation>
+        </message>
+        <message>
+            <source>Cut sheets</source>
+            <translation>Cut sheets</translation>
+        </message>
+        <message>
+            <source>Cut sheets...</source>
+            <translation>Cut sheets...</translation>
+        </message>
+        <message>
             <source>D {D:g} mm, C {C:g} mm, length {length:g} mm</source>
             <translation>D {D:g} mm, C {C:g} mm, length {length:g} mm</translation>
         </message>
@@ -790,6 +1065,14 @@
         <message>
             <source>Display</source>
             <translation>Display</translation>
+        </message>
+        <message>
+            <source>Distance</source>
+            <translation>Distance</translation>
+        </message>
+        <message>
+            <source>Distance [mm]</source>
+            <translation>Distance [mm]</translation>
         </message>
         <message>
             <source>Distance mm</source>
@@ -828,6 +1111,10 @@
             <translation>Edges within</translation>
         </message>
         <message>
+            <source>Efficiency</source>
+            <translation>Efficiency</translation>
+        </message>
+        <message>
             <source>Elbow</source>
             <translation>Elbow</translation>
         </message>
@@ -850,6 +1137,10 @@
         <message>
             <source>Ends that face each other and are not farther apart are joined</source>
             <translation>Ends that face each other and are not farther apart are joined</translation>
+        </message>
+        <message>
+            <source>Energy that is bought for it in a year</source>
+            <translation>Energy that is bought for it in a year</translation>
         </message>
         <message>
             <source>Enlarge the pixels around the pointer (L)</source>
@@ -912,6 +1203,10 @@
             <translation>Finding pipes</translation>
         </message>
         <message>
+            <source>First and last</source>
+            <translation>First and last</translation>
+        </message>
+        <message>
             <source>First steps</source>
             <translation>First steps</translation>
         </message>
@@ -938,6 +1233,10 @@
         <message>
             <source>Flange: click on the straight edge of its rim</source>
             <translation>Flange: click on the straight edge of its rim</translation>
+        </message>
+        <message>
+            <source>Flanges</source>
+            <translation>Flanges</translation>
         </message>
         <message>
             <source>Folder with the photographs</source>
@@ -1008,6 +1307,22 @@
             <translation>Heading</translation>
         </message>
         <message>
+            <source>Heat W</source>
+            <translation>Heat W</translation>
+        </message>
+        <message>
+            <source>Heat delivered over energy bought: 0.9 of a boiler, 3 of a heat pump</source>
+            <translation>Heat delivered over energy bought: 0.9 of a boiler, 3 of a heat pump</translation>
+        </message>
+        <message>
+            <source>Heat that a metre of pipe may lose, or temperature of the surface</source>
+            <translation>Heat that a metre of pipe may lose, or temperature of the surface</translation>
+        </message>
+        <message>
+            <source>Hours in a year</source>
+            <translation>Hours in a year</translation>
+        </message>
+        <message>
             <source>How far from the contours edges are looked for: more where components lie beside their pictures</source>
             <translation>How far from the contours edges are looked for: more where components lie beside their pictures</translation>
         </message>
@@ -1018,6 +1333,10 @@
         <message>
             <source>How far its middle moves; of pipes across their axis</source>
             <translation>How far its middle moves; of pipes across their axis</translation>
+        </message>
+        <message>
+            <source>How long the first and the last piece of a bend are</source>
+            <translation>How long the first and the last piece of a bend are</translation>
         </message>
         <message>
             <source>How many parts of the processor are used at most</source>
@@ -1056,6 +1375,22 @@
             <translation>In the station that was there before</translation>
         </message>
         <message>
+            <source>Insulate</source>
+            <translation>Insulate</translation>
+        </message>
+        <message>
+            <source>Insulation</source>
+            <translation>Insulation</translation>
+        </message>
+        <message>
+            <source>Insulation, a bare component or an obstacle</source>
+            <translation>Insulation, a bare component or an obstacle</translation>
+        </message>
+        <message>
+            <source>Jacket</source>
+            <translation>Jacket</translation>
+        </message>
+        <message>
             <source>Join ends up to</source>
             <translation>Join ends up to</translation>
         </message>
@@ -1084,6 +1419,14 @@
             <translation>Largest distance {distance:.1f} mm.</translation>
         </message>
         <message>
+            <source>Layers</source>
+            <translation>Layers</translation>
+        </message>
+        <message>
+            <source>Leave the specification's rules and obstacles away</source>
+            <translation>Leave the specification's rules and obstacles away</translation>
+        </message>
+        <message>
             <source>Length</source>
             <translation>Length</translation>
         </message>
@@ -1108,6 +1451,10 @@
             <translation>Loading the photograph...</translation>
         </message>
         <message>
+            <source>Longer by</source>
+            <translation>Longer by</translation>
+        </message>
+        <message>
             <source>Look how the stations lie to each other; the document stays as it is until you press OK</source>
             <translation>Look how the stations lie to each other; the document stays as it is until you press OK</translation>
         </message>
@@ -1126,6 +1473,14 @@
         <message>
             <source>Loupe</source>
             <translation>Loupe</translation>
+        </message>
+        <message>
+            <source>Material</source>
+            <translation>Material</translation>
+        </message>
+        <message>
+            <source>Material of a layer around the first</source>
+            <translation>Material of a layer around the first</translation>
         </message>
         <message>
             <source>Measure a pipe</source>
@@ -1150,6 +1505,10 @@
         <message>
             <source>Measuring ...</source>
             <translation>Measuring ...</translation>
+        </message>
+        <message>
+            <source>Medium</source>
+            <translation>Medium</translation>
         </message>
         <message>
             <source>Merge Stations</source>
@@ -1192,12 +1551,36 @@
             <translation>Note</translation>
         </message>
         <message>
+            <source>Of a segmented bend</source>
+            <translation>Of a segmented bend</translation>
+        </message>
+        <message>
+            <source>Of operation</source>
+            <translation>Of operation</translation>
+        </message>
+        <message>
+            <source>Of straight pieces of sheet metal, or round as foam shells are</source>
+            <translation>Of straight pieces of sheet metal, or round as foam shells are</translation>
+        </message>
+        <message>
             <source>Of the axes, the larger of both ends of what they have in common; of surfaces the shortest</source>
             <translation>Of the axes, the larger of both ends of what they have in common; of surfaces the shortest</translation>
         </message>
         <message>
             <source>Of the distances between contours and edges</source>
             <translation>Of the distances between contours and edges</translation>
+        </message>
+        <message>
+            <source>Of the energy that is bought</source>
+            <translation>Of the energy that is bought</translation>
+        </message>
+        <message>
+            <source>Of the finished surfaces; negative where they overlap</source>
+            <translation>Of the finished surfaces; negative where they overlap</translation>
+        </message>
+        <message>
+            <source>Of the inner layer</source>
+            <translation>Of the inner layer</translation>
         </message>
         <message>
             <source>Of the report's texts</source>
@@ -1210,6 +1593,10 @@
         <message>
             <source>Open its photo window</source>
             <translation>Open its photo window</translation>
+        </message>
+        <message>
+            <source>Operation</source>
+            <translation>Operation</translation>
         </message>
         <message>
             <source>Otherwise selected components follow their own edges, and gaps may open to their neighbours</source>
@@ -1252,6 +1639,10 @@
             <translation>Picks</translation>
         </message>
         <message>
+            <source>Pieces</source>
+            <translation>Pieces</translation>
+        </message>
+        <message>
             <source>Pipe</source>
             <translation>Pipe</translation>
         </message>
@@ -1282,6 +1673,14 @@
         <message>
             <source>Poor up to</source>
             <translation>Poor up to</translation>
+        </message>
+        <message>
+            <source>Preview</source>
+            <translation>Preview</translation>
+        </message>
+        <message>
+            <source>Price</source>
+            <translation>Price</translation>
         </message>
         <message>
             <source>Put all that are ticked into the document</source>
@@ -1322,6 +1721,10 @@
         <message>
             <source>Radius</source>
             <translation>Radius</translation>
+        </message>
+        <message>
+            <source>Read layers, rules for single components, obstacles</source>
+            <translation>Read layers, rules for single components, obstacles</translation>
         </message>
         <message>
             <source>Reconstruct picks</source>
@@ -1380,6 +1783,10 @@
             <translation>Round outer faces of solids are taken for pipes; to a surface only the shortest distance is measured</translation>
         </message>
         <message>
+            <source>Round up to what can be bought</source>
+            <translation>Round up to what can be bought</translation>
+        </message>
+        <message>
             <source>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</source>
             <translation>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</translation>
         </message>
@@ -1404,6 +1811,10 @@
             <translation>Search band</translation>
         </message>
         <message>
+            <source>Second layer</source>
+            <translation>Second layer</translation>
+        </message>
+        <message>
             <source>Select the solids in the tree or in 3D.</source>
             <translation>Select the solids in the tree or in 3D.</translation>
         </message>
@@ -1420,12 +1831,24 @@
             <translation>Set-on branch</translation>
         </message>
         <message>
+            <source>Sheet</source>
+            <translation>Sheet</translation>
+        </message>
+        <message>
+            <source>Sheet metal around the insulation</source>
+            <translation>Sheet metal around the insulation</translation>
+        </message>
+        <message>
             <source>Shift mm</source>
             <translation>Shift mm</translation>
         </message>
         <message>
             <source>Show one pixel of the photograph as one of the screen (Ctrl+1)</source>
             <translation>Show one pixel of the photograph as one of the screen (Ctrl+1)</translation>
+        </message>
+        <message>
+            <source>Show the insulation in 3D; the document stays as it is</source>
+            <translation>Show the insulation in 3D; the document stays as it is</translation>
         </message>
         <message>
             <source>Show the next pipe of the list (digits choose directly)</source>
@@ -1462,6 +1885,18 @@
         <message>
             <source>Something else is still being computed; wait for its end or cancel it</source>
             <translation>Something else is still being computed; wait for its end or cancel it</translation>
+        </message>
+        <message>
+            <source>Specification of insulation</source>
+            <translation>Specification of insulation</translation>
+        </message>
+        <message>
+            <source>Specification {name}: {rules} rules, {obstacles} obstacles</source>
+            <translation>Specification {name}: {rules} rules, {obstacles} obstacles</translation>
+        </message>
+        <message>
+            <source>Specification...</source>
+            <translation>Specification...</translation>
         </message>
         <message>
             <source>Standard</source>
@@ -1516,6 +1951,10 @@
             <translation>Surface of selected solids</translation>
         </message>
         <message>
+            <source>Surroundings</source>
+            <translation>Surroundings</translation>
+        </message>
+        <message>
             <source>Tables of your own</source>
             <translation>Tables of your own</translation>
         </message>
@@ -1538,6 +1977,14 @@
         <message>
             <source>Tees, Reducers and Caps</source>
             <translation>Tees, Reducers and Caps</translation>
+        </message>
+        <message>
+            <source>Temperature of the air around</source>
+            <translation>Temperature of the air around</translation>
+        </message>
+        <message>
+            <source>Temperature of what flows</source>
+            <translation>Temperature of what flows</translation>
         </message>
         <message>
             <source>That is all. The document's other tab shows the pipeline in 3D; the keys V and F, one after the other, fit the view. Import photographs of your own with Import Station.</source>
@@ -1574,6 +2021,10 @@
         <message>
             <source>The model as designed</source>
             <translation>The model as designed</translation>
+        </message>
+        <message>
+            <source>The next thickness that merchants keep in stock</source>
+            <translation>The next thickness that merchants keep in stock</translation>
         </message>
         <message>
             <source>The photo window shows the station's photographs side by side. Turn the wheel to zoom at the pointer, drag with the middle button to move the photographs.</source>
@@ -1624,6 +2075,18 @@
             <translation>Thicker pipes are not looked for</translation>
         </message>
         <message>
+            <source>Thickness</source>
+            <translation>Thickness</translation>
+        </message>
+        <message>
+            <source>Thickness of the second layer</source>
+            <translation>Thickness of the second layer</translation>
+        </message>
+        <message>
+            <source>Thickness of the sheet metal</source>
+            <translation>Thickness of the sheet metal</translation>
+        </message>
+        <message>
             <source>Thinner pipes are not looked for</source>
             <translation>Thinner pipes are not looked for</translation>
         </message>
@@ -1636,8 +2099,16 @@
             <translation>Tick the pipes from this confidence on: how much likelier they are than chance, as a logarithm</translation>
         </message>
         <message>
+            <source>Tight bends</source>
+            <translation>Tight bends</translation>
+        </message>
+        <message>
             <source>Tolerances</source>
             <translation>Tolerances</translation>
+        </message>
+        <message>
+            <source>Too close</source>
+            <translation>Too close</translation>
         </message>
         <message>
             <source>Turn °</source>
@@ -1684,12 +2155,32 @@
             <translation>What does not fit</translation>
         </message>
         <message>
+            <source>What is closer to the finished surface is listed as a clash</source>
+            <translation>What is closer to the finished surface is listed as a clash</translation>
+        </message>
+        <message>
+            <source>What is done where the insulation is too thick for a bend's radius</source>
+            <translation>What is done where the insulation is too thick for a bend's radius</translation>
+        </message>
+        <message>
             <source>What is looked for</source>
             <translation>What is looked for</translation>
         </message>
         <message>
+            <source>What it sets free; a dash where the share of a kWh is not known</source>
+            <translation>What it sets free; a dash where the share of a kWh is not known</translation>
+        </message>
+        <message>
+            <source>What that energy costs; a dash where its price is not known</source>
+            <translation>What that energy costs; a dash where its price is not known</translation>
+        </message>
+        <message>
             <source>What the colours of the contours tell</source>
             <translation>What the colours of the contours tell</translation>
+        </message>
+        <message>
+            <source>What the first and the last piece reach over the pipe</source>
+            <translation>What the first and the last piece reach over the pipe</translation>
         </message>
         <message>
             <source>What they share</source>
@@ -1720,12 +2211,32 @@
             <translation>Which diameters are possible: those of the standard, any, or a certain one</translation>
         </message>
         <message>
+            <source>While in operation</source>
+            <translation>While in operation</translation>
+        </message>
+        <message>
+            <source>Wind</source>
+            <translation>Wind</translation>
+        </message>
+        <message>
             <source>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</source>
             <translation>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</translation>
         </message>
         <message>
             <source>Within the standard's tolerances</source>
             <translation>Within the standard's tolerances</translation>
+        </message>
+        <message>
+            <source>Without it</source>
+            <translation>Without it</translation>
+        </message>
+        <message>
+            <source>Write the flat parts of the jacket, laid out on sheets</source>
+            <translation>Write the flat parts of the jacket, laid out on sheets</translation>
+        </message>
+        <message>
+            <source>Write the list of parts, sheets and material</source>
+            <translation>Write the list of parts, sheets and material</translation>
         </message>
         <message>
             <source>Write the pipeline as IFC for BIM, as STEP solids or as a table.</source>
@@ -1772,6 +2283,22 @@
             <translation>as entered below</translation>
         </message>
         <message>
+            <source>as it is ({count})</source>
+            <translation>as it is ({count})</translation>
+        </message>
+        <message>
+            <source>as long as the others</source>
+            <translation>as long as the others</translation>
+        </message>
+        <message>
+            <source>as the specification says</source>
+            <translation>as the specification says</translation>
+        </message>
+        <message>
+            <source>bare</source>
+            <translation>bare</translation>
+        </message>
+        <message>
             <source>beyond</source>
             <translation>beyond</translation>
         </message>
@@ -1780,12 +2307,32 @@
             <translation>blind</translation>
         </message>
         <message>
+            <source>boxes</source>
+            <translation>boxes</translation>
+        </message>
+        <message>
+            <source>by DIN 4140</source>
+            <translation>by DIN 4140</translation>
+        </message>
+        <message>
+            <source>by heat loss</source>
+            <translation>by heat loss</translation>
+        </message>
+        <message>
             <source>by kind</source>
             <translation>by kind</translation>
         </message>
         <message>
             <source>by quality</source>
             <translation>by quality</translation>
+        </message>
+        <message>
+            <source>by rule</source>
+            <translation>by rule</translation>
+        </message>
+        <message>
+            <source>by surface temperature</source>
+            <translation>by surface temperature</translation>
         </message>
         <message>
             <source>choose the model as designed</source>
@@ -1852,12 +2399,20 @@
             <translation>free</translation>
         </message>
         <message>
+            <source>give at least one layer</source>
+            <translation>give at least one layer</translation>
+        </message>
+        <message>
             <source>give one</source>
             <translation>give one</translation>
         </message>
         <message>
             <source>grey {value}</source>
             <translation>grey {value}</translation>
+        </message>
+        <message>
+            <source>half as long as the others</source>
+            <translation>half as long as the others</translation>
         </message>
         <message>
             <source>is</source>
@@ -1872,12 +2427,20 @@
             <translation>its photographs are missing</translation>
         </message>
         <message>
+            <source>kWh/a</source>
+            <translation>kWh/a</translation>
+        </message>
+        <message>
             <source>last seen in {folder}</source>
             <translation>last seen in {folder}</translation>
         </message>
         <message>
             <source>left out</source>
             <translation>left out</translation>
+        </message>
+        <message>
+            <source>longer than the half</source>
+            <translation>longer than the half</translation>
         </message>
         <message>
             <source>loose plate</source>
@@ -1900,8 +2463,16 @@
             <translation>no solid is selected</translation>
         </message>
         <message>
+            <source>none</source>
+            <translation>none</translation>
+        </message>
+        <message>
             <source>not determined</source>
             <translation>not determined</translation>
+        </message>
+        <message>
+            <source>not known</source>
+            <translation>not known</translation>
         </message>
         <message>
             <source>not trusted</source>
@@ -1912,8 +2483,16 @@
             <translation>not two components of two stations are selected</translation>
         </message>
         <message>
+            <source>nothing is insulated like this</source>
+            <translation>nothing is insulated like this</translation>
+        </message>
+        <message>
             <source>nothing was put together yet</source>
             <translation>nothing was put together yet</translation>
+        </message>
+        <message>
+            <source>now</source>
+            <translation>now</translation>
         </message>
         <message>
             <source>of the standard</source>
@@ -1926,6 +2505,10 @@
         <message>
             <source>open one, or import a station first</source>
             <translation>open one, or import a station first</translation>
+        </message>
+        <message>
+            <source>planning the insulation</source>
+            <translation>planning the insulation</translation>
         </message>
         <message>
             <source>plate</source>
@@ -1952,8 +2535,24 @@
             <translation>reading...</translation>
         </message>
         <message>
+            <source>refuse</source>
+            <translation>refuse</translation>
+        </message>
+        <message>
+            <source>runs of the selected ({count})</source>
+            <translation>runs of the selected ({count})</translation>
+        </message>
+        <message>
+            <source>saved</source>
+            <translation>saved</translation>
+        </message>
+        <message>
             <source>say where they are in its photo window</source>
             <translation>say where they are in its photo window</translation>
+        </message>
+        <message>
+            <source>segmented</source>
+            <translation>segmented</translation>
         </message>
         <message>
             <source>select one of each (Ctrl and click)</source>
@@ -1972,6 +2571,10 @@
             <translation>select some, or export all</translation>
         </message>
         <message>
+            <source>select some, or insulate all</source>
+            <translation>select some, or insulate all</translation>
+        </message>
+        <message>
             <source>select the solids as designed in the tree or in 3D</source>
             <translation>select the solids as designed in the tree or in 3D</translation>
         </message>
@@ -1986,6 +2589,10 @@
         <message>
             <source>slip-on</source>
             <translation>slip-on</translation>
+        </message>
+        <message>
+            <source>smooth</source>
+            <translation>smooth</translation>
         </message>
         <message>
             <source>there is no IFC file</source>
@@ -2008,6 +2615,14 @@
             <translation>threaded</translation>
         </message>
         <message>
+            <source>to</source>
+            <translation>to</translation>
+        </message>
+        <message>
+            <source>two pieces with a mitre</source>
+            <translation>two pieces with a mitre</translation>
+        </message>
+        <message>
             <source>up to</source>
             <translation>up to</translation>
         </message>
@@ -2024,8 +2639,16 @@
             <translation>weld neck</translation>
         </message>
         <message>
+            <source>with this insulation</source>
+            <translation>with this insulation</translation>
+        </message>
+        <message>
             <source>within their tolerances</source>
             <translation>within their tolerances</translation>
+        </message>
+        <message>
+            <source>writing {path}</source>
+            <translation>writing {path}</translation>
         </message>
         <message>
             <source>written: {path}</source>
@@ -2038,6 +2661,10 @@
         <message>
             <source>{count} beyond</source>
             <translation>{count} beyond</translation>
+        </message>
+        <message>
+            <source>{count} components insulated</source>
+            <translation>{count} components insulated</translation>
         </message>
         <message>
             <source>{count} found. Click on one to choose it.</source>
@@ -2058,6 +2685,10 @@
         <message>
             <source>{diameter:g} mm, as entered</source>
             <translation>{diameter:g} mm, as entered</translation>
+        </message>
+        <message>
+            <source>{pieces} pieces over {length:.1f} m: {volume:.3f} m³ of insulation, {area:.2f} m² of jacket</source>
+            <translation>{pieces} pieces over {length:.1f} m: {volume:.3f} m³ of insulation, {area:.2f} m² of jacket</translation>
         </message>
         <message>
             <source>{station} ({count} components)</source>
