@@ -15,9 +15,9 @@ demo: setup  ## reconstruct and insulate the bundled sample and say where the re
 	$(python) -m pipeworkbench reconstruct resources/samples/dummy/A \
 	  --out $(results)/dummy.json --out $(results)/dummy.csv --out $(results)/dummy.png \
 	  --out $(results)/dummy.ifc --out $(results)/dummy.step --out $(results)/dummy.FCStd
-	$(python) -m pipeworkbench insulate $(results)/dummy.json --thickness 30 --medium 90 --quiet \
+	$(python) -m pipeworkbench insulate $(results)/dummy.json --thickness 30 --medium 90 \
 	  --out $(results)/dummy_insulation.pdf --out $(results)/dummy_insulation.dxf --out $(results)/dummy_insulation.step --out $(results)/dummy_insulation.xlsx
-	@echo "The results are in $(abspath $(results)): look at dummy.png first; then make install, and open dummy.FCStd in FreeCAD."
+	@echo "The results are in $(abspath $(results)): look at dummy.png first, and at dummy_insulation.pdf; then make install, and open dummy.FCStd in FreeCAD."
 
 test: setup  ## run every test: plain, inside FreeCAD, inside FreeCAD's window
 	@bash scripts/test.sh

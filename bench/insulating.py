@@ -13,8 +13,8 @@ import time
 from pathlib import Path
 
 import pipe_rack
-from pipeworkbench.insulation.patterns import patterns_of
 
+from pipeworkbench.insulation.patterns import patterns_of
 from pipeworkbench.insulation.planning import plan
 from pipeworkbench.insulation.specification import Specification
 from pipeworkbench.pipeline import Pipeline

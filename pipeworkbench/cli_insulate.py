@@ -53,7 +53,7 @@ def add_parser(commands: Any) -> None:
     command.add_argument("--quiet", action="store_true", help="no output")
     command.add_argument("--json", action="store_true", help="print a machine-readable summary")
     command.add_argument("--catalogue", metavar="DIR", type=Path, help="folder with CSV tables of your own, which add to the standards'")
-    command.add_argument("--language", choices=["en", "de"], default="en", help="of lists and labels; default: en")
+    command.add_argument("--language", choices=["en", "de"], default="en", help="of .xlsx, .pdf, .svg and labels; default: en")
     add_ifc_schema(command)
     command.set_defaults(run=run)
 
@@ -173,14 +173,15 @@ def _told(made: Insulated, energy: Energy | None, left_out: Sequence[InputError]
     area = sum(pattern.outline.area * pattern.quantity for pattern in made.patterns) / MM2_PER_M2
     count = sum(pattern.quantity for pattern in made.patterns)
     lines = [
-        f"{len(plan.pieces)} coverings, {_volume(plan) / MM3_PER_M3:.3f} m³ of insulation, {len(plan.bare)} components stay bare",
+        f"{len(plan.pieces)} coverings, {_volume(plan) / MM3_PER_M3:.3f} m³ of insulation, components that stay bare: {len(plan.bare)}",
         f"{count} parts of sheet metal, {area:.2f} m² on {len(made.sheets)} sheets",
     ]
     lines += _some("Left bare", (str(problem) for problem in left_out))
     lines += _some("Too near", (_near(one.a, one.b, one.distance, one.resolved) for one in plan.clashes))
     lines += _some("Note", plan.remarks)
     if energy is not None:
-        lines += [f"{name}: {_year(year)}" for name, year in (("Bare", energy.bare), ("Insulated", energy.insulated), ("Saved", energy.saved))]
+        money = " and ".join(sorted({row.currency for row in energy.rows}))
+        lines += [f"{name}: {_year(year, money)}" for name, year in (("Bare", energy.bare), ("Insulated", energy.insulated), ("Saved", energy.saved))]
     return lines
 
 
@@ -196,9 +197,9 @@ def _near(one: str, other: str, distance: float, resolved: str) -> str:
     return f"{one} and {other}: {how}{', ' + resolved if resolved else ''}"
 
 
-def _year(year: Yearly) -> str:
+def _year(year: Yearly, money: str) -> str:
     parts = [f"{year.heat:.0f} W", f"{year.energy:.0f} kWh a year"]
-    parts += [] if year.cost is None else [f"{year.cost:.0f} in money a year"]
+    parts += [] if year.cost is None else [f"{year.cost:.0f} {money} a year"]
     parts += [] if year.co2 is None else [f"{year.co2:.0f} kg CO2 a year"]
     return ", ".join(parts)
 

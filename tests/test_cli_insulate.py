@@ -3,8 +3,10 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
+import openpyxl
 import pytest
 
 from pipeworkbench.cli import main
@@ -105,11 +107,40 @@ def test_without_a_jacket_there_are_no_parts(file, capsys):
     assert said["pieces"] == 3
 
 
-def test_specification_says_what_goes_where(tmp_path, capsys):
+def test_sample_specification_fits_the_sample_pipeline(tmp_path, capsys):
     out = tmp_path / "cuts.csv"
-    said = summary(capsys, DUMMY, "--spec", SAMPLE, "--leave-out", "--out", out)
-    assert said["pieces"] > 0
-    assert rows(out)
+    said = summary(capsys, DUMMY, "--spec", SAMPLE, "--out", out)
+    assert said["bare"] == []
+    assert {row["component"] for row in rows(out)} >= {"A-P00", "A-E00", "A-F09"}
+
+
+def test_every_label_says_the_run_of_its_part(tmp_path, capsys):
+    labels, out = tmp_path / "labels.csv", tmp_path / "cuts.csv"
+    summary(capsys, DUMMY, "--thickness", 30, "--labels", labels, "--out", out)
+    runs = {row["part"]: row["run"] for row in rows(out)}
+    assert {row["kind"] for row in rows(labels)} >= {"jacket", "gore", "disc", "box mantle", "box face"}
+    assert {row["part"]: row["run"] for row in rows(labels)} == runs
+    assert all(runs.values())
+
+
+def test_money_is_told_in_its_currency(file, tmp_path, capsys):
+    spec = tmp_path / "spec.json"
+    operation = {"medium_temperature": 90, "price_per_kwh": 0.1, "currency": "CHF"}
+    changes = {"layers": [{"material": "mineral wool", "thickness": 30}]}
+    spec.write_text(json.dumps({"schema": "pipeworkbench-insulation/1", "default": changes, "operation": operation}), encoding="utf-8")
+    assert main(["insulate", str(file), "--spec", str(spec)]) == 0
+    saved = capsys.readouterr().out.partition("Saved: ")[2].splitlines()[0]
+    assert re.search(r", \d+ CHF a year$", saved)
+
+
+@pytest.mark.slow
+def test_german_lists_hold_no_english_words(tmp_path, capsys):
+    out = tmp_path / "lists.xlsx"
+    summary(capsys, DUMMY, "--spec", SAMPLE, "--language", "de", "--out", out)
+    cells = {cell.value for sheet in openpyxl.load_workbook(out) for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)}
+    words = {word for cell in cells for word in re.findall("[A-Za-zÄÖÜäöüß]+", cell)}
+    assert {"Mineralwolle", "Aluminium", "Kehle", "Endscheibe", "Dämmung"} <= words
+    assert not words & {"mineral", "wool", "aluminium", "throat", "heel", "gore", "disc", "jacket"}
 
 
 @pytest.mark.slow

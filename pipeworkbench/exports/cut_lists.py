@@ -13,7 +13,7 @@ from typing import Protocol
 from pipeworkbench.errors import InputError
 from pipeworkbench.exports.sheets import NestedSheet
 from pipeworkbench.exports.spreadsheets import Cell, Column, Row, Table, write_csv_rows, write_xlsx
-from pipeworkbench.exports.texts import Texts, named, texts_of
+from pipeworkbench.exports.texts import Texts, named, phrased, texts_of
 from pipeworkbench.insulation.flat import Pattern
 from pipeworkbench.solids.covering_quantities import axis_length, layer_volumes, outer_area
 from pipeworkbench.solids.coverings import AnyCovering, BoxCovering, Layer, Sheet, StopCovering
@@ -33,11 +33,16 @@ METAL_COLUMNS = (
     Column("sheet_weight_kg", 2), Column("cost", 2),
 )  # fmt: skip
 INSULATION_COLUMNS = (
-    Column("material"), Column("thickness_mm", 1), Column("volume_m3", 4), Column("outer_area_m2", 3), Column("weight_kg", 2), Column("cost", 2),
+    Column("material"), Column("thickness_mm", 1), Column("volume_m3", 4), Column("outer_area_m2", 3), Column("total_weight_kg", 2),
+    Column("cost", 2),
 )  # fmt: skip
 SECTION_COLUMNS = (
     Column("material"), Column("thickness_mm", 1), Column("kind"), Column("inner_diameter_mm", 1), Column("pieces", 0), Column("length_m", 3),
     Column("volume_m3", 4),
+)  # fmt: skip
+COVERING_COLUMNS = (
+    Column("covering"), Column("run"), Column("component"), Column("kind"), Column("material"), Column("thickness_mm", 1),
+    Column("inner_diameter_mm", 1), Column("outer_diameter_mm", 1), Column("length_mm", 1), Column("volume_m3", 5), Column("weight_kg", 3),
 )  # fmt: skip
 SHEET_COLUMNS = (
     Column("number", 0), Column("material"), Column("thickness_mm", 2), Column("width_mm", 1), Column("height_mm", 1), Column("pieces", 0),
@@ -68,12 +73,13 @@ class CutLists:
     """Rows of all lists by the columns' keys.
 
     ``cuts`` has one for each part, ``metals`` for each material and thickness of sheet metal, ``insulation`` for each of layers,
-    ``sections`` for each kind and inner diameter of them, ``sheets`` for each sheet.
+    ``coverings`` for each layer around each component, ``sections`` for each kind and inner diameter of them, ``sheets`` for each sheet.
     """
 
     cuts: tuple[Row, ...]
     metals: tuple[Row, ...]
     insulation: tuple[Row, ...]
+    coverings: tuple[Row, ...]
     sections: tuple[Row, ...]
     sheets: tuple[Row, ...]
 
@@ -114,6 +120,7 @@ def cut_lists(
         tuple(_cut_row(pattern, sheets, runs, sheet_density) for pattern in patterns),
         _metal_rows(patterns, sheets, sheet_density, price),
         _insulation_rows(coverings, layer_density, price),
+        tuple(row for piece in pieces for row in _covering_rows(piece, layer_density)),
         _section_rows(coverings),
         tuple(_sheet_row(sheet, sheet_density) for sheet in sheets),
     )
@@ -131,7 +138,7 @@ def write_material_list_csv(lists: CutLists, path: Path) -> None:
 
 
 def write_cut_list_xlsx(lists: CutLists, path: Path, *, language: str = "en", title: str = "") -> None:
-    """Write all lists as one workbook with the worksheets cut list, materials and sheets.
+    """Write all lists as one workbook with the worksheets cut list, insulation, materials and sheets.
 
     Raises
     ------
@@ -143,7 +150,7 @@ def write_cut_list_xlsx(lists: CutLists, path: Path, *, language: str = "en", ti
     texts = texts_of(TEXTS, language, "the cut list")
 
     def table(name: str, columns: Sequence[Column], rows: Iterable[Row], sums: Sequence[str]) -> Table:
-        shown = [{**row, "kind": named(texts, "kinds", str(row["kind"]))} if "kind" in row else row for row in rows]
+        shown = [_in_words(row, texts) for row in rows]
         return Table(texts["tables"][name], columns, texts["columns"], shown, _total(shown, sums, columns[0], texts))
 
     cuts = table("cuts", CUT_COLUMNS, lists.cuts, ("quantity", "total_area_m2", "total_weight_kg"))
@@ -159,11 +166,21 @@ def write_cut_list_xlsx(lists: CutLists, path: Path, *, language: str = "en", ti
         "cost",
     )
     metals = table("metals", METAL_COLUMNS, lists.metals, metal_sums)
-    insulation = table("insulation", INSULATION_COLUMNS, lists.insulation, ("volume_m3", "weight_kg", "cost"))
+    insulation = table("insulation", INSULATION_COLUMNS, lists.insulation, ("volume_m3", "total_weight_kg", "cost"))
+    coverings = table("coverings", COVERING_COLUMNS, lists.coverings, ("volume_m3", "weight_kg"))
     sections = table("sections", SECTION_COLUMNS, lists.sections, ("pieces", "volume_m3"))
     sheets = table("sheets", SHEET_COLUMNS, lists.sheets, ("pieces", "sheet_area_m2", "sheet_weight_kg"))
     names = texts["worksheets"]
-    write_xlsx({names["cuts"]: [cuts], names["materials"]: [metals, insulation, sections], names["sheets"]: [sheets]}, path, title)
+    worksheets = {"cuts": [cuts], "coverings": [coverings], "materials": [metals, insulation, sections], "sheets": [sheets]}
+    write_xlsx({names[key]: tables for key, tables in worksheets.items()}, path, title)
+
+
+def _in_words(row: Row, texts: Texts) -> Row:
+    """Return a row whose kinds, materials and remarks are in the texts' language."""
+    words = {key: named(texts, f"{key}s", str(row[key])) for key in ("kind", "material") if key in row}
+    if "remarks" in row:
+        words["remarks"] = "; ".join(phrased(texts, "remarks", remark) for remark in str(row["remarks"]).split("; "))
+    return {**row, **words}
 
 
 def _total(rows: Sequence[Row], sums: Sequence[str], first: Column, texts: Texts) -> Row | None:
@@ -256,7 +273,7 @@ def _insulation_rows(coverings: Sequence[AnyCovering], density: Figure, price: F
             "thickness_mm": layer.thickness,
             "volume_m3": round(volume * MM3, 9),
             "outer_area_m2": round(area * MM2, 6),
-            "weight_kg": _weight(volume, density(layer.material)),
+            "total_weight_kg": _weight(volume, density(layer.material)),
             "cost": _cost(volume * MM3, price(layer.material)),
         }
         for layer, (volume, area) in sorted(sums.items(), key=lambda item: (item[0].material, item[0].thickness))
@@ -271,6 +288,27 @@ def _first_layers(covering: AnyCovering, number: int) -> AnyCovering:
         missing = covering.total_thickness - inner.total_thickness
         inner = dataclasses.replace(inner, begin=covering.begin + missing, end=covering.end - missing)
     return inner
+
+
+def _covering_rows(piece: Insulated, density: Figure) -> Iterable[Row]:
+    """Yield what each layer of a covering is cut to, from the inside to the outside."""
+    covering = piece.covering
+    if isinstance(covering, StopCovering):
+        return
+    for layer, inner, volume in zip(covering.layers, covering.boundaries, layer_volumes(covering), strict=False):
+        yield {
+            "covering": covering.id,
+            "run": piece.run,
+            "component": covering.component,
+            "kind": covering.kind,
+            "material": layer.material,
+            "thickness_mm": layer.thickness,
+            "inner_diameter_mm": round(2 * (covering.radius + inner), 3),
+            "outer_diameter_mm": round(2 * (covering.radius + inner + layer.thickness), 3),
+            "length_mm": round(axis_length(covering), 3),
+            "volume_m3": round(volume * MM3, 9),
+            "weight_kg": _weight(volume, density(layer.material)),
+        }
 
 
 def _section_rows(coverings: Sequence[AnyCovering]) -> tuple[Row, ...]:

@@ -43,7 +43,7 @@ class Label:
 
 
 def labels_of_sheets(sheets: Sequence[NestedSheet], runs: Mapping[str, str]) -> tuple[Label, ...]:
-    """Return a label for each piece, sheet by sheet and in the order of the parts; ``runs`` are the components' by their ids."""
+    """Return a label for each piece, sheet by sheet and in the order of the parts; ``runs`` are the coverings' by their ids."""
     return tuple(
         _label(part.pattern, part.number, runs, sheet.number)
         for sheet in sheets
@@ -81,7 +81,7 @@ def _label(pattern: Pattern, number: int, runs: Mapping[str, str], sheet: int | 
     left, bottom, right, top = pattern.outline.bounds
     size = (round(right - left, 3), round(top - bottom, 3))
     metal = pattern.sheet
-    run = runs.get(pattern.component, "")
+    run = runs.get(pattern.covering, "")
     return Label(pattern.id, run, pattern.component, pattern.kind, metal.material, metal.thickness, *size, number, pattern.quantity, sheet)
 
 
@@ -122,7 +122,7 @@ def _draw_label(page: Page, label: Label, left: float, top: float, texts: Texts)
     lines = (
         (names["component"], f"{label.component}, {named(texts, 'kinds', label.kind)}"),
         (names["run"], label.run),
-        (names["material"], texts["material"].format(material=label.material, thickness=label.thickness)),
+        (names["material"], texts["material"].format(material=named(texts, "materials", label.material), thickness=label.thickness)),
         (names["size"], f"{label.width:.1f} × {label.height:.1f} mm"),
         (names["piece"], f"{piece}{sheet}"),
     )

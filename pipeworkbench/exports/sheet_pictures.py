@@ -27,7 +27,7 @@ from pipeworkbench.exports.pages import (
     write_pages,
 )
 from pipeworkbench.exports.sheets import NestedSheet, Placed
-from pipeworkbench.exports.texts import Texts, named, texts_of
+from pipeworkbench.exports.texts import Texts, named, phrased, texts_of
 from pipeworkbench.insulation.flat import Path, Pattern
 from pipeworkbench.recon.camera import Array
 
@@ -112,13 +112,15 @@ def _draw_frame(page: Page, title: str, texts: Texts) -> None:
         page.line([(x, y + 0.8), (x + 9.0, y + 0.8)], LINE, colour, linestyle=dashes)
         page.text(x + 11.0, y, texts["legend"][layer], 7.0)
         x += 17.0 + text_width(texts["legend"][layer], 7.0)
+    page.text(x, y, texts["side"], 7.0, color=GREY)
+    x += text_width(texts["side"], 7.0)
     page.text(width - FRAME - 4.0, y, fitted(title, 7.0, width - FRAME - 10.0 - x), 7.0, ha="right", color=GREY)
 
 
 def _sheet_head(page: Page, *, sheet: NestedSheet, count: int, title: str, texts: Texts, said: Sequence[str]) -> None:
     _draw_frame(page, title, texts)
     name = texts["sheet_of"].format(number=sheet.number, count=count)
-    material = texts["material"].format(material=sheet.sheet.material, thickness=sheet.sheet.thickness)
+    material = texts["material"].format(material=named(texts, "materials", sheet.sheet.material), thickness=sheet.sheet.thickness)
     size = texts["sheet_size"].format(width=sheet.size.width, height=sheet.size.height)
     _draw_head(page, name, " · ".join((material, size, texts["used"].format(share=100 * sheet.used), *said)))
 
@@ -299,12 +301,13 @@ def _draw_part(page: Page, pattern: Pattern, cell: tuple[float, float], size: tu
     width, height = right - left, upper - bottom
     sheet = pattern.sheet
     kind = named(texts, "kinds", pattern.kind)
-    line = texts["part_line"].format(kind=kind, material=sheet.material, thickness=sheet.thickness, quantity=pattern.quantity)
+    material = named(texts, "materials", sheet.material)
+    line = texts["part_line"].format(kind=kind, material=material, thickness=sheet.thickness, quantity=pattern.quantity)
     page.text(x, top, fitted(pattern.id, 9.0, room, bold=True), 9.0, fontweight="bold")
     page.text(x, top - 4.2, fitted(line, 7.0, room), 7.0)
     areas = texts["part_areas"].format(width=width, height=height, area=pattern.cut_area / 1e6)
     page.text(x, top - 7.8, fitted(areas, 7.0, room), 7.0)
-    page.text(x, cell[1] + 2.0, fitted("; ".join(pattern.remarks), 6.0, room), 6.0, color=GREY)
+    page.text(x, cell[1] + 2.0, fitted("; ".join(phrased(texts, "remarks", remark) for remark in pattern.remarks), 6.0, room), 6.0, color=GREY)
     scale = max(width / (room - 10.0), height / (size[1] - 29.0))
     middle = np.array([cell[0] + size[0] / 2 + 3.0, cell[1] + (size[1] - 29.0) / 2 + 13.0])
     corner = middle - np.array([left + right, bottom + upper]) / 2 / scale

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -32,3 +33,18 @@ def texts_of(file: str, language: str, source: object) -> Texts:
 def named(texts: Texts, group: str, key: str) -> str:
     """Return the text of a key in a group, the key itself where the group does not hold it."""
     return str(texts[group].get(key, key))
+
+
+def phrased(texts: Texts, group: str, text: str) -> str:
+    """Return a text in the words of a group, whose keys are texts with places such as ``{cause}``; itself where none is like it.
+
+    Examples
+    --------
+    >>> phrased({"remarks": {"{here} of {all}": "{here} von {all}"}}, "remarks", "1 of 2")
+    '1 von 2'
+    """
+    for like, wanted in texts[group].items():
+        found = re.fullmatch(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+)", re.escape(like)), text)
+        if found:
+            return str(wanted.format(**found.groupdict()))
+    return text

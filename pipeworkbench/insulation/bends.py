@@ -22,6 +22,7 @@ from pipeworkbench.solids.outlines import refuse_tight_bend
 
 # common shop practice: a 90 degree bend is made of three whole gores and two halves, of five and two where it is wide
 USUAL_JOINT_DEG, WIDE_JOINT_DEG, WIDE_MM = 22.5, 15.0, 150.0
+MEASURED_DEG = 1.0  # by which a bend that is made as 45 or 90 degrees may have been measured wider
 SMALL_ANGLE_DEG = 20.0  # below, two halves will do
 LEAST_THROAT_MM = 30.0  # of a mitre joint's pieces: less can be neither rolled nor beaded
 SAME = 1e-9
@@ -59,8 +60,9 @@ class Bend:
 def gores_by_rule(angle: float, outer_radius: float, bend_radius: float, sheet_width: float = math.inf) -> int:
     """Return the number of gores of a bend, the first and the last being halves.
 
-    Common shop practice: neighbours' axes differ by at most 22.5 degrees up to an outer radius of 150 mm and by 15 beyond; there
-    are at least three gores, two for less than 20 degrees. A gore's heel is not longer than the sheet is wide.
+    Common shop practice: neighbours' axes differ by at most 22.5 degrees up to an outer radius of 150 mm and by 15 beyond, where a
+    degree more of the whole bend, as it was measured, does not count; there are at least three gores, two for less than 20 degrees. A
+    gore's heel is not longer than the sheet is wide.
 
     Parameters
     ----------
@@ -72,7 +74,7 @@ def gores_by_rule(angle: float, outer_radius: float, bend_radius: float, sheet_w
         What a gore may be long at its heel, mm, without overlap.
     """
     joint = math.radians(USUAL_JOINT_DEG if outer_radius <= WIDE_MM else WIDE_JOINT_DEG)
-    usual = 1 + math.ceil(angle / joint - SAME)
+    usual = 1 + math.ceil((angle - math.radians(MEASURED_DEG)) / joint - SAME)
     return max(usual, 2 if angle < math.radians(SMALL_ANGLE_DEG) else 3, fewest_gores(angle, outer_radius, bend_radius, sheet_width))
 
 

@@ -79,14 +79,34 @@ def test_insulation_is_summed_by_material_and_thickness(lists):
     inner, middle, outer = 24.15, 64.15, 84.15
     assert wool["volume_m3"] == pytest.approx(math.pi * (middle**2 - inner**2) * 2000 / 1e9, abs=1e-9)
     assert wool["outer_area_m2"] == pytest.approx(2 * math.pi * middle * 2000 / 1e6, abs=1e-6)
-    assert wool["weight_kg"] == pytest.approx(80 * math.pi * (middle**2 - inner**2) * 2000 / 1e9, abs=1e-5)
+    assert wool["total_weight_kg"] == pytest.approx(80 * math.pi * (middle**2 - inner**2) * 2000 / 1e9, abs=1e-5)
     assert foam["volume_m3"] == pytest.approx(math.pi * (outer**2 - middle**2) * 1500 / 1e9, abs=1e-9)
-    assert foam["weight_kg"] is None  # its density is not known
+    assert foam["total_weight_kg"] is None  # its density is not known
 
 
 def test_sections_are_summed_by_inner_diameter(lists):
     sections = {(row["material"], row["inner_diameter_mm"]): (row["kind"], row["pieces"], row["length_m"]) for row in lists.sections}
     assert sections == {("mineral wool", 48.3): ("straight", 2, 2.0), ("foam", 128.3): ("straight", 1, 1.5)}
+
+
+def test_each_layer_is_listed_with_what_it_is_cut_to(lists):
+    keys = ("covering", "run", "material", "inner_diameter_mm", "outer_diameter_mm", "length_mm")
+    assert [tuple(row[key] for key in keys) for row in lists.coverings] == [
+        ("P1 jacket", "R1", "mineral wool", 48.3, 128.3, 1500.0),
+        ("P1 jacket", "R1", "foam", 128.3, 168.3, 1500.0),
+        ("P2 jacket", "R2", "mineral wool", 48.3, 128.3, 500.0),
+    ]
+    wool = lists.coverings[0]
+    assert wool["weight_kg"] == pytest.approx(80 * math.pi * (64.15**2 - 24.15**2) * 1500 / 1e9, abs=1e-5)
+    assert lists.coverings[1]["weight_kg"] is None
+    assert sum(row["volume_m3"] for row in lists.coverings) == pytest.approx(sum(row["volume_m3"] for row in lists.insulation), abs=1e-8)
+
+
+def test_remarks_are_in_the_language_of_the_list(tmp_path):
+    remarks = ("throat 0.8 mm, heel 35.3 mm", "the opening for P 7 box, all around, is to be cut on site", "bead")
+    write_cut_list_xlsx(lists_of([gore(remarks=remarks)]), tmp_path / "cuts.xlsx", language="de")
+    cell = openpyxl.load_workbook(tmp_path / "cuts.xlsx")["Zuschnitt"]["P2"]
+    assert cell.value == "Kehle 0.8 mm, Rücken 35.3 mm; Ausschnitt für P 7 box rundum auf der Baustelle schneiden; bead"
 
 
 def test_layers_of_a_box_have_their_own_outer_areas():
@@ -116,12 +136,13 @@ def test_csv_is_read_back(lists, tmp_path):
     with (tmp_path / "materials.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["list"] for row in rows] == ["sheet metal"] * 2 + ["insulation"] * 2 + ["section"] * 2
-    assert rows[2]["weight_kg"] == ""
+    assert rows[2]["total_weight_kg"] == ""
     assert float(rows[3]["volume_m3"]) == lists.insulation[1]["volume_m3"]
 
 
 @pytest.mark.parametrize(
-    ("language", "names", "header"), [("en", ["Cut list", "Materials", "Sheets"], "Part"), ("de", ["Zuschnitt", "Material", "Tafeln"], "Teil")]
+    ("language", "names", "header"),
+    [("en", ["Cut list", "Insulation", "Materials", "Sheets"], "Part"), ("de", ["Zuschnitt", "Dämmung", "Material", "Tafeln"], "Teil")],
 )
 def test_workbook_has_numbers_as_numbers_under_headers_with_units(lists, tmp_path, language, names, header):
     write_cut_list_xlsx(lists, tmp_path / "cuts.xlsx", language=language, title="Süd")
@@ -137,9 +158,10 @@ def test_workbook_has_numbers_as_numbers_under_headers_with_units(lists, tmp_pat
     assert sheet["J2"].data_type == "n"
     assert sheet["N5"].value == pytest.approx(sum(row["total_weight_kg"] for row in lists.cuts))
     assert sheet["G5"].value == 2 + 3 + 2
-    texts = {cell.value for row in book[names[1]].iter_rows() for cell in row}
-    assert {"foam", "mineral wool", "aluminium", 48.3, 128.3} <= texts
-    assert book[names[2]]["A2"].value == 1
+    texts = {cell.value for row in book[names[2]].iter_rows() for cell in row}
+    named = {"en": {"mineral wool", "aluminium"}, "de": {"Mineralwolle", "Aluminium"}}
+    assert {"foam", 48.3, 128.3, *named[language]} <= texts
+    assert book[names[3]]["A2"].value == 1
 
 
 def test_a_sum_with_an_unknown_weight_is_not_told(lists, tmp_path):

@@ -15,7 +15,7 @@ from pipeworkbench.insulation.treatment import SheetSize
 
 def test_every_piece_has_a_label_with_the_sheet_it_lies_on():
     sheets = nest([jacket(quantity=7), gore(), disc()], [SheetSize(1250.0, 1000.0)])
-    labels = labels_of_sheets(sheets, {"P1": "R1", "E1": "R1"})
+    labels = labels_of_sheets(sheets, {"P1 jacket": "R1", "E1 gore": "R1"})
     assert len(labels) == 7 + 3 + 2
     for label in labels:
         (sheet,) = [sheet for sheet in sheets if any((p.pattern.id, p.number) == (label.part, label.number) for p in sheet.parts)]
@@ -34,7 +34,7 @@ def test_labels_fill_pages_of_a4(tmp_path):
 
 
 def test_labels_as_csv_have_one_line_each_and_no_formula(tmp_path):
-    write_labels(labels_of_patterns([gore(ODD_ID, component="@x")], {"@x": "+R"}), tmp_path / "labels.csv")
+    write_labels(labels_of_patterns([gore(ODD_ID, component="@x", covering="C")], {"C": "+R"}), tmp_path / "labels.csv")
     with (tmp_path / "labels.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["piece"] for row in rows] == ["1", "2", "3"]

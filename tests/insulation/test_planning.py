@@ -69,6 +69,10 @@ def test_half_first_gores_take_nothing_of_the_pipes():
         (90.0, 150.0, 305.0, math.inf, 5),
         (90.0, 151.0, 305.0, math.inf, 7),
         (45.0, 60.0, 76.0, math.inf, 3),
+        # as measured: still bends of 90 and 45 degrees
+        (90.02, 60.0, 76.0, math.inf, 5),
+        (45.9, 60.0, 76.0, math.inf, 3),
+        (91.1, 60.0, 76.0, math.inf, 6),
         (20.0, 60.0, 76.0, math.inf, 3),
         (19.0, 60.0, 76.0, math.inf, 2),
         # a whole gore of 22.5 degrees is 2 * 1140 * tan(11.25 deg) = 453 mm long at the heel, one of 18 deg 361 mm

@@ -43,6 +43,10 @@ class ResultView:
         self.widget, form = group(tr("Result"))
         self.summary = words("summary")
         form.addRow(self.summary)
+        # above the tables, which may reach below the window: who presses OK is to have read what stays bare
+        self.problems = words("problems")
+        self.problems.setStyleSheet(f"color: {BAD_TEXT}")
+        form.addRow(self.problems)
         self.energy = Table(
             "energy",
             (
@@ -64,9 +68,6 @@ class ResultView:
             chosen,
         )
         form.addRow(self.clashes)
-        self.problems = words("problems")
-        self.problems.setStyleSheet(f"color: {BAD_TEXT}")
-        form.addRow(self.problems)
 
     def show(self, outcome: Outcome | None) -> None:
         """Show an outcome, or that there is none."""
