@@ -26,6 +26,7 @@ from pipeworkbench.errors import COMMAND_LINE, InputError, PipeWorkbenchError, o
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from pipeworkbench.exports.writers import Result
     from pipeworkbench.pipeline import Pipeline
     from pipeworkbench.recon.adjust import AdjustmentSettings, Solution
     from pipeworkbench.recon.pick_settings import PickSettings
@@ -87,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument("--auto", action="store_true", help="find the pipes without picks; most, not all of them: look at the .png")
     command.add_argument("--flanges", action="store_true", help="with --auto: look for flanges along the pipes, too; takes some seconds more")
     command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output, may be repeated")
+    _add_take_off(command)
     command.add_argument("--working-range", metavar=("NEAR", "FAR"), nargs=2, type=float, help="distances of the pipes from the rig in mm")
     command.add_argument("--diameters", metavar=("FROM", "TO"), nargs=2, type=float, help="outside diameters to consider in mm")
     command.add_argument("--alternatives", metavar="N", type=int, default=1, help=f"list up to N ranked answers per pick (at most {MOST_LISTED})")
@@ -113,6 +115,7 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
     )
     command.add_argument("input", metavar="INPUT", type=Path, help="calibration file, folder of a COLMAP model, or pipeline JSON")
     command.add_argument("--out", metavar="FILE", type=Path, action="append", required=True, help="output; may be repeated for a pipeline")
+    _add_take_off(command)
     command.add_argument("--format", choices=["opencv", "colmap", "metashape", "kalibr"], help="default: recognised by the content")
     command.add_argument("--images", metavar="FILE", type=Path, nargs="+", help="the photographs, one per camera in the cameras' order")
     command.add_argument("--image-folder", metavar="DIR", type=Path, help="where the photographs lie that the input names")
@@ -135,20 +138,23 @@ def _add_catalogue(command: argparse.ArgumentParser) -> None:
     command.add_argument("--catalogue", metavar="DIR", type=Path, help="folder with CSV tables of your own, which add to the standards'")
 
 
+def _add_take_off(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--takeoff", metavar="FILE.csv", type=Path, help="take-off list of the pipeline: a line per item with its quantity")
+
+
 def _add_language(command: argparse.ArgumentParser) -> None:
     command.add_argument("--language", choices=["en", "de"], default="en", help="of the report (.html); default: en")
 
 
 def _reconstruct(options: argparse.Namespace) -> int:
-    from pipeworkbench.exports.writers import check_paths
     from pipeworkbench.recon.station import read_station
 
     began = time.perf_counter()
-    check_paths(options.out)
+    _check_outputs(options)
     _check_together(options)
     stations = [read_station(path) for path in options.station]
     files = options.picks or [station.source.parent / "picks.json" for station in stations]
-    check_paths(options.out, inputs=[path for station in stations for path in (station.source, *station.images)] + files)
+    _check_outputs(options, inputs=[path for station in stations for path in (station.source, *station.images)] + files)
     picks = None if options.auto else [_picks_of(file, station) for file, station in zip(files, stations, strict=True)]
     found, separate = _found(options, stations, picks)
     if not found.pipeline.components:
@@ -181,20 +187,46 @@ def _found(options: argparse.Namespace, stations: Sequence[Station], picks: Sequ
 
 def _written(options: argparse.Namespace, pipeline: Pipeline, separate: Sequence[Pipeline], stations: Sequence[Station]) -> list[Path]:
     """Write the pipeline, and beside it, so that nothing is lost, those of stations that could not be merged."""
-    from pipeworkbench.exports.writers import Result, write
+    from pipeworkbench.exports.writers import Result
     from pipeworkbench.pipeline import free_id
 
-    outputs = list(options.out)
-    for path in options.out:
-        write(Result(pipeline, tuple(stations), options.language, options.ifc_schema), path)
+    outputs = _outputs_of(options)
+    for path in list(outputs):
+        _write(options, Result(pipeline, tuple(stations), options.language, options.ifc_schema), path, path)
     for one in separate:
         # a station may be called what no file can be
         name = re.sub(r"[^\w.-]", "_", one.frame)
-        for path in options.out:
+        for path in _outputs_of(options):
             own = path.with_stem(free_id(f"{path.stem}-{name}", {other.stem for other in outputs if other.suffix == path.suffix}))
-            write(Result(one, tuple(stations), options.language, options.ifc_schema), own)
+            _write(options, Result(one, tuple(stations), options.language, options.ifc_schema), path, own)
             outputs.append(own)
     return outputs
+
+
+def _outputs_of(options: argparse.Namespace) -> list[Path]:
+    """Return all files that are to be written."""
+    return [*options.out, *([] if options.takeoff is None else [options.takeoff])]
+
+
+def _check_outputs(options: argparse.Namespace, *, has_photographs: bool = True, inputs: Sequence[Path] = ()) -> None:
+    """Refuse outputs that could not be written."""
+    from pipeworkbench.exports.take_off import ENDING
+    from pipeworkbench.exports.writers import check_paths
+
+    if options.takeoff is not None:
+        check_paths([options.takeoff], endings=(ENDING,))
+    check_paths(_outputs_of(options), has_photographs=has_photographs, inputs=inputs)
+
+
+def _write(options: argparse.Namespace, result: Result, asked: Path, path: Path) -> None:
+    """Write a result in the way that is asked for with an output of the options."""
+    from pipeworkbench.exports.take_off import write_take_off
+    from pipeworkbench.exports.writers import write
+
+    if asked == options.takeoff:
+        write_take_off(result.pipeline, path)
+    else:
+        write(result, path)
 
 
 def _as_one(merged: Together) -> Reconstruction:
@@ -277,6 +309,8 @@ def _convert(options: argparse.Namespace) -> int:
         return _convert_pipeline(pipeline, options)
     if len(options.out) > 1:
         raise InputError(COMMAND_LINE, "--out", "a rig becomes one station", "name one output")
+    if options.takeoff is not None:
+        raise InputError(COMMAND_LINE, "--takeoff", f"is for pipelines, {options.input} is a rig", "leave it out")
     (output,) = options.out
     if output.suffix.lower() != ".json":
         raise InputError(output, "", "a rig becomes a station file", "name an output that ends in .json")
@@ -310,15 +344,15 @@ def _read_pipeline(path: Path) -> Pipeline | None:
 
 
 def _convert_pipeline(pipeline: Pipeline, options: argparse.Namespace) -> int:
-    from pipeworkbench.exports.writers import Result, check_paths, write
+    from pipeworkbench.exports.writers import Result
 
     unused = ("images", "image_folder", "unit", "scale", "up", "cameras", "name")
     for name in unused:
         if getattr(options, name) is not None:
             raise InputError(COMMAND_LINE, f"--{name.replace('_', '-')}", f"is for rigs, {options.input} is a pipeline", "leave it out")
-    check_paths(options.out, has_photographs=False, inputs=(options.input,))
-    for path in options.out:
-        write(Result(pipeline, language=options.language, ifc_schema=options.ifc_schema), path)
+    _check_outputs(options, has_photographs=False, inputs=(options.input,))
+    for path in _outputs_of(options):
+        _write(options, Result(pipeline, language=options.language, ifc_schema=options.ifc_schema), path, path)
         if not options.quiet:
             print(f"written: {path}")
     return DONE

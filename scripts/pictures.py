@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Make the pictures of docs/images anew: the screenshots that the tests in FreeCAD's window take, made small.
+"""Make the pictures of docs/images anew: the screenshots that the tests in FreeCAD's window take, and a cut sheet, made small.
 
-``.venv/bin/python scripts/pictures.py``; needs what ``make test`` needs. A picture that would be larger than `LARGEST_BYTES` gets fewer greys.
+``.venv/bin/python scripts/pictures.py``; needs what ``make test`` needs, and pdftoppm (Debian's poppler-utils).
+A picture that would be larger than `LARGEST_BYTES` gets fewer greys.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from PIL import Image
 
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "images"
-TESTS = ("conftest.py", "window.py", "test_whole_way.py", "test_pipeline_tools.py")
+TESTS = ("conftest.py", "window.py", "test_whole_way.py", "test_pipeline_tools.py", "test_insulation.py")
 PICTURES = {  # the tests' names of them, and the file's
     "way_pipe": "pipe",
     "way_elbows": "elbows",
@@ -30,11 +31,16 @@ PICTURES = {  # the tests' names of them, and the file's
     "merge": "merge",
     "deviations": "deviations",
     "report": "report",
+    "insulation": "insulation",
+    "cut_sheets": "cut_sheets",
 }
 WIDTH = 1200
 LARGEST_BYTES = 150_000
 COLOURS, GREYS = 64, (96, 64, 48, 32, 24, 16, 12)  # in a picture's palette
 COLOURED = 40  # between a colour's largest and smallest part
+SHEET_OF = ROOT / "tests" / "data" / "one_of_everything.json"
+SHEET = ("-f", "1", "-singlefile", "-r", "150", "-png")  # the first page, in dots per inch
+SHEET_BOX = (0.02, 0.02, 0.98, 0.98)  # of the page: left, top, right, bottom
 SCREEN = "-screen 0 1600x1000x24"
 
 
@@ -43,6 +49,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         take(folder)
+        draw_sheet(folder)
         missing = [taken for taken in PICTURES if not (folder / "shots" / f"{taken}.png").is_file()]
         if missing:
             print((folder / "log").read_text(encoding="utf-8", errors="replace")[-4000:])
@@ -78,6 +85,18 @@ def take(folder: Path) -> None:
     command = ["xvfb-run", "-a", "-s", SCREEN, "freecad", "-u", str(folder / "user.cfg"), str(ROOT / "tests" / "run_in_freecad.py")]
     with (folder / "log").open("wb") as log:
         subprocess.run(command, env=environment, stdout=log, stderr=subprocess.STDOUT, timeout=600, check=False)
+
+
+def draw_sheet(folder: Path) -> None:
+    """Draw the first sheet of what is cut for the insulation of one of everything, as a picture beside the screenshots."""
+    pdf, picture = folder / "sheets.pdf", folder / "shots" / "cut_sheets.png"
+    command = [sys.executable, "-m", "pipeworkbench", "insulate", str(SHEET_OF), "--thickness", "40", "--leave-out", "--quiet", "--out", str(pdf)]
+    subprocess.run(command, check=True, env=os.environ | {"PYTHONPATH": str(ROOT)})
+    command = ["pdftoppm", *SHEET, str(pdf), str(picture.with_suffix(""))]
+    subprocess.run(command, check=True)
+    page = Image.open(picture)
+    left, top, right, bottom = (round(part * side) for part, side in zip(SHEET_BOX, page.size * 2, strict=True))
+    page.crop((left, top, right, bottom)).save(picture)
 
 
 def shrunk(path: Path) -> bytes:

@@ -7,7 +7,8 @@ New texts appear in ``resources/translations/PipeWorkbench_*.ts`` as unfinished:
 editor, and run it again. What is no longer in the sources stays as vanished, for texts come back. Python's standard library is all it needs.
 
 Texts are: ``tr("...")``; ``QT_TRANSLATE_NOOP("context", "...")``; ``menu_text`` and ``tooltip`` of commands; ``title`` of
-classes in the package's gui; ``Group("...")`` of the table of commands; tooltips of document objects' properties.
+classes in the package's gui; ``Group("...")`` of the table of commands; tooltips of document objects' properties; names and
+explanations of ``Format``, what is exported.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ OWN_LANGUAGE = "en"  # the sources'
 CONTEXT, MENUS, PROPERTIES = "PipeWorkbench", "Workbench", "App::Property"
 COMMAND_TEXTS = ("menu_text", "tooltip")
 PROPERTY_TOOLTIP = 3  # position among the arguments of Property
+FORMAT_TEXTS = slice(1, 3)  # positions among the arguments of Format
 PLACEHOLDER = re.compile(r"{[^{}]*}")
 
 # sections and tags of Qt's .qm files (qtranslator.cpp)
@@ -171,6 +173,8 @@ def _texts_of_call(call: ast.Call, path: Path) -> Iterator[Key]:
         yield from ((MENUS, text) for text in _literals(arguments[:1]))
     elif name == "Property":
         yield from ((PROPERTIES, text) for text in _literals(arguments[PROPERTY_TOOLTIP : PROPERTY_TOOLTIP + 1]))
+    elif name == "Format" and path.parts[0] == "features":
+        yield from ((CONTEXT, text) for text in _literals(arguments[FORMAT_TEXTS]))
 
 
 def _texts_of_class(node: ast.ClassDef, path: Path) -> Iterator[Key]:

@@ -404,6 +404,13 @@ def test_output_that_is_given_twice_is_refused(sample, out, refusal):
     assert "given twice" in refusal(sample, "--out", out / "." / "result.json")
 
 
+@pytest.mark.parametrize(
+    ("name", "problem"), [("list.json", "list.json: unknown ending '.json'"), ("result.csv", "is given twice"), ("nowhere/list.csv", "no folder")]
+)
+def test_take_off_list_that_could_not_be_written_is_refused(sample, out, refusal, name, problem):
+    assert problem in refusal(sample, "--takeoff", out / name, output=out / "result.csv")
+
+
 def test_output_that_is_a_folder_is_refused(sample, tmp_path, refusal):
     (tmp_path / "folder.json").mkdir()
     assert "folder.json" in refusal(sample, output=tmp_path / "folder.json")
@@ -681,7 +688,7 @@ def test_stations_that_stay_apart_are_written_beside_whatever_they_are_called(tm
     pipelines = [
         Pipeline.of_station(name, (Pipe(id="P1", start=(0, 0, 0), end=(0, 0, 900.0), outer_diameter=48.3),)) for name in ("A", "../B:1", "..?B 1")
     ]
-    options = argparse.Namespace(out=[tmp_path / "plant.json", tmp_path / "plant.csv"], language="en", ifc_schema="IFC4")
+    options = argparse.Namespace(out=[tmp_path / "plant.json", tmp_path / "plant.csv"], language="en", ifc_schema="IFC4", takeoff=None)
     outputs = cli._written(options, pipelines[0], pipelines[1:], ())
     assert len(set(outputs)) == 6
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(path.name for path in outputs)

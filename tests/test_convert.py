@@ -179,6 +179,34 @@ def test_pipeline_is_written_in_several_formats(pipeline, tmp_path, capsys):
     assert outputs[2].read_text(encoding="utf-8").startswith("ISO-10303-21")
 
 
+def test_take_off_list_is_written_beside_the_table(pipeline, tmp_path, capsys):
+    table, listed = tmp_path / "table.csv", tmp_path / "listed.CSV"
+    assert main(["convert", str(pipeline), "--out", str(table), "--takeoff", str(listed)]) == 0
+    assert capsys.readouterr().out.splitlines() == [f"written: {table}", f"written: {listed}"]
+    with listed.open(encoding="utf-8", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert (row["kind"], row["dn"], row["quantity"], row["unit"], row["components"]) == ("pipe", "40", "2.0", "m", "p1")
+
+
+@pytest.mark.parametrize(
+    ("name", "problem"),
+    [
+        ("list.xlsx", "unknown ending '.xlsx'; use one of .csv"),
+        ("copy.csv", "is given twice"),
+        ("pipes.json", "unknown ending"),
+        ("nowhere/list.csv", "no folder"),
+    ],
+)
+def test_take_off_list_that_could_not_be_written_is_refused_before_anything_is(pipeline, tmp_path, refusal, name, problem):
+    assert problem in refusal(pipeline, "--out", tmp_path / "copy.csv", "--takeoff", tmp_path / name)
+    assert [path.name for path in tmp_path.iterdir()] == ["pipes.json"]
+
+
+def test_take_off_list_of_a_rig_is_refused(rig, tmp_path, refusal):
+    line = refusal(rig, "--out", tmp_path / "station.json", "--unit", "m", "--takeoff", tmp_path / "list.csv")
+    assert "--takeoff: is for pipelines" in line
+
+
 def test_picture_of_a_pipeline_needs_a_station(pipeline, tmp_path, refusal):
     line = refusal(pipeline, "--out", tmp_path / "copy.json", "--out", tmp_path / "picture.png")
     assert "picture.png: a picture needs the station's photographs" in line

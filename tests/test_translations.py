@@ -61,7 +61,11 @@ def test_texts_are_found_where_they_are_written(translations, tmp_path):
         tmp_path, "commands/a.py", 'class A(Command):\n    name = "PipeWB_A"\n    menu_text = "Do A"\n    tooltip = "It does A"\n    icon = "a.svg"\n'
     )
     source(tmp_path, "commands/__init__.py", 'G = Group("Bar", ())\n')
-    source(tmp_path, "features/f.py", 'p = Property("Length", "App::PropertyLength", "Pipe", "How long")\n')
+    source(
+        tmp_path,
+        "features/f.py",
+        'p = Property("Length", "App::PropertyLength", "Pipe", "How long")\nf = Format(".csv", "Table", "A line each", "none")\n',
+    )
     assert set(translations.texts_of(tmp_path)) == {
         ("PipeWorkbench", "Pipe"),
         ("PipeWorkbench", "One"),
@@ -70,6 +74,8 @@ def test_texts_are_found_where_they_are_written(translations, tmp_path):
         ("PipeWB_A", "It does A"),
         ("Workbench", "Bar"),
         ("App::Property", "How long"),
+        ("PipeWorkbench", "Table"),
+        ("PipeWorkbench", "A line each"),
     }
 
 

@@ -20,6 +20,7 @@ from pipeworkbench.exports.kinds import designation
 from pipeworkbench.files import written_whole
 from pipeworkbench.pipeline import AnyComponent, Elbow, Pipe, Pipeline
 
+ENDING = ".csv"  # of the files' names
 COLUMNS = (
     "item", "kind", "description", "dn", "outer_diameter_mm", "wall_thickness_mm", "standard", "material",
     "quantity", "unit", "pieces", "length_m", "weight_kg", "components",

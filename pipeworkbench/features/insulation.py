@@ -26,6 +26,7 @@ from pipeworkbench.insulation.specification import Specification
 from pipeworkbench.solids.covering_quantities import layer_volumes, outer_area
 
 if TYPE_CHECKING:
+    from pipeworkbench.exports.ifc import Schema
     from pipeworkbench.insulation.clashes import Clash
     from pipeworkbench.insulation.planning import Piece, Plan
 
@@ -200,11 +201,16 @@ def plan_of(document: Any) -> Plan:
 def only_plan(document: Any, plans: Sequence[Plan]) -> Plan:
     """Return the plan of a document's only frame; errors are those of `plan_of`."""
     if not plans:
-        raise InputError(document.Label, "", "nothing is insulated", "insulate some components first")
+        raise nothing_insulated(document)
     if len(plans) > 1:
         frames = ", ".join(plan.pipeline.frame for plan in plans)
         raise InputError(document.Label, frames, "these stations are not merged, so that their insulation has no common frame", "merge them first")
     return plans[0]
+
+
+def nothing_insulated(document: Any) -> InputError:
+    """Return what is to be raised where a document's insulation is needed and there is none."""
+    return InputError(document.Label, "", "nothing is insulated", "insulate some components first")
 
 
 def export_insulation(document: Any, path: Path, language: str = "en") -> None:
@@ -218,7 +224,7 @@ def export_insulation(document: Any, path: Path, language: str = "en") -> None:
     write_plan(plan_of(document), path, language)
 
 
-def write_plan(plan: Plan, path: Path, language: str = "en") -> None:
+def write_plan(plan: Plan, path: Path, language: str = "en", ifc_schema: Schema = "IFC4") -> None:
     """Write a plan in the format of the path's ending; no document is touched.
 
     Raises
@@ -230,7 +236,7 @@ def write_plan(plan: Plan, path: Path, language: str = "en") -> None:
 
     if path.suffix.lower() not in insulation_files.WRITERS:
         raise InputError(path, "", f"unknown ending '{path.suffix}'", f"use one of {' '.join(insulation_files.WRITERS)}")
-    insulation_files.write(insulation_files.Insulated(plan, language), path)
+    insulation_files.write(insulation_files.Insulated(plan, language, ifc_schema), path)
 
 
 def run_of(objects: Sequence[Any]) -> list[Any]:

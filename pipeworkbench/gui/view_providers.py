@@ -28,6 +28,8 @@ from pipeworkbench.gui.colours import LegendEntry, colour_of, insulation_colour,
 from pipeworkbench.gui.station_scene import StationScene
 
 SEEN_THROUGH = 60  # per cent: insulation
+# per cent of a component's size, of its triangles from it: with FreeCAD's 0.2 elbows are finer than their pipes, and are drawn slowly
+DEVIATION = 1.0
 COLOURED_BY = frozenset({"Quality", "LevelOfAccuracy", "Approximate"})  # properties that colours depend on
 
 
@@ -209,6 +211,7 @@ def show(obj: Any) -> None:
     # FreeCAD hides what was written without a window
     obj.ViewObject.Visibility = True
     if isinstance(obj.Proxy, ComponentFeature):
+        obj.ViewObject.Deviation = DEVIATION
         _colour(obj, colour_mode(obj.Document))
     elif is_kind(obj, InsulationFeature):
         obj.ViewObject.Transparency = SEEN_THROUGH

@@ -815,6 +815,10 @@
             <translation>Ungefähres Rohr</translation>
         </message>
         <message>
+            <source>Around what is insulated in the document</source>
+            <translation>Um alles, was im Dokument gedämmt ist</translation>
+        </message>
+        <message>
             <source>As built</source>
             <translation>Bestand</translation>
         </message>
@@ -1067,6 +1071,10 @@
             <translation>Kosten/a</translation>
         </message>
         <message>
+            <source>Cut and material lists</source>
+            <translation>Stück- und Materiallisten</translation>
+        </message>
+        <message>
             <source>Cut list</source>
             <translation>Stückliste</translation>
         </message>
@@ -1203,6 +1211,10 @@
             <translation>Enter übernimmt das Rohr. Ziffern wählen ein anderes. Esc geht zurück.</translation>
         </message>
         <message>
+            <source>Everything that is known, for this program's command line</source>
+            <translation>Alles, was bekannt ist, für die Befehlszeile dieses Programms</translation>
+        </message>
+        <message>
             <source>Exactly as in the standard</source>
             <translation>Genau wie in der Norm</translation>
         </message>
@@ -1293,6 +1305,38 @@
         <message>
             <source>Folders with CSV files of your own; a table takes the place of the same one further up and of the standards'</source>
             <translation>Ordner mit eigenen CSV-Dateien; was weiter unten steht, ersetzt Gleiches weiter oben und in den Normen</translation>
+        </message>
+        <message>
+            <source>For BIM: pipe segments and fittings with their dimensions and accuracy</source>
+            <translation>Für BIM: Rohre und Formteile mit ihren Maßen und ihrer Genauigkeit</translation>
+        </message>
+        <message>
+            <source>For CAD: named solids, coloured by kind</source>
+            <translation>Für CAD: benannte Körper, nach Art gefärbt</translation>
+        </message>
+        <message>
+            <source>For estimating and purchasing: a line per item with its quantity</source>
+            <translation>Für Kalkulation und Einkauf: eine Zeile je Position mit ihrer Menge</translation>
+        </message>
+        <message>
+            <source>For isometrics: components with their ends, bores and items</source>
+            <translation>Für Isometrien: Bauteile mit Enden, Nennweiten und Positionen</translation>
+        </message>
+        <message>
+            <source>For people: one file with dimensions, accuracy, charts and photographs</source>
+            <translation>Für Menschen: eine Datei mit Maßen, Genauigkeiten, Diagrammen und Fotos</translation>
+        </message>
+        <message>
+            <source>For spreadsheets: a line per component</source>
+            <translation>Für Tabellenkalkulationen: eine Zeile je Bauteil</translation>
+        </message>
+        <message>
+            <source>For the shop and purchasing: parts, sheets and materials of the insulation</source>
+            <translation>Für Werkstatt und Einkauf: Teile, Tafeln und Werkstoffe der Dämmung</translation>
+        </message>
+        <message>
+            <source>For the shop: the insulation's parts of sheet metal, laid out on sheets</source>
+            <translation>Für die Werkstatt: die Blechteile der Dämmung, auf Tafeln verteilt</translation>
         </message>
         <message>
             <source>Forget</source>
@@ -1405,6 +1449,10 @@
         <message>
             <source>How the adjustment treats diameters and bend radii of the standards</source>
             <translation>Wie die Ausgleichung Durchmesser und Biegeradien der Normen behandelt</translation>
+        </message>
+        <message>
+            <source>IFC</source>
+            <translation>IFC</translation>
         </message>
         <message>
             <source>IFC4 is what most programs read</source>
@@ -1611,6 +1659,10 @@
             <translation>Hinweis</translation>
         </message>
         <message>
+            <source>Nothing is insulated yet: use Insulation first.</source>
+            <translation>Noch ist nichts gedämmt: zuerst Dämmung verwenden.</translation>
+        </message>
+        <message>
             <source>Of a segmented bend</source>
             <translation>Eines Segmentbogens</translation>
         </message>
@@ -1644,7 +1696,11 @@
         </message>
         <message>
             <source>Of the report's texts</source>
-            <translation>Der Texte des Berichts</translation>
+            <translation type="vanished">Der Texte des Berichts</translation>
+        </message>
+        <message>
+            <source>Of the texts in the file</source>
+            <translation>Der Texte in der Datei</translation>
         </message>
         <message>
             <source>Open it afterwards</source>
@@ -1699,12 +1755,20 @@
             <translation>Markierungen</translation>
         </message>
         <message>
+            <source>Pictures of the cut sheets</source>
+            <translation>Bilder der Zuschnitte</translation>
+        </message>
+        <message>
             <source>Pieces</source>
             <translation>Segmente</translation>
         </message>
         <message>
             <source>Pipe</source>
             <translation>Rohr</translation>
+        </message>
+        <message>
+            <source>Pipe Workbench pipeline</source>
+            <translation>Pipe-Workbench-Rohrleitung</translation>
         </message>
         <message>
             <source>Pipe: click inside it, or on both its edges</source>
@@ -1725,6 +1789,10 @@
         <message>
             <source>Pipes that are nearly level, plumb or at right angles are so</source>
             <translation>Fast waagerechte, lotrechte oder rechtwinklige Rohre sind es auch</translation>
+        </message>
+        <message>
+            <source>Piping component file</source>
+            <translation>Piping Component File</translation>
         </message>
         <message>
             <source>Poor</source>
@@ -1857,6 +1925,10 @@
         <message>
             <source>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</source>
             <translation>Stränge, die fast so liegen, gelten mit wenig Gewicht als solche: Wo die Fotos etwas anderes sagen, entscheiden sie</translation>
+        </message>
+        <message>
+            <source>STEP solids</source>
+            <translation>STEP-Körper</translation>
         </message>
         <message>
             <source>Same place</source>
@@ -2023,6 +2095,10 @@
             <translation>Umgebung</translation>
         </message>
         <message>
+            <source>Table</source>
+            <translation>Tabelle</translation>
+        </message>
+        <message>
             <source>Tables of your own</source>
             <translation>Eigene Tabellen</translation>
         </message>
@@ -2037,6 +2113,10 @@
         <message>
             <source>Take the chosen one off the list</source>
             <translation>Den gewählten aus der Liste nehmen</translation>
+        </message>
+        <message>
+            <source>Take-off list</source>
+            <translation>Mengenauszug</translation>
         </message>
         <message>
             <source>Tee</source>
@@ -2183,6 +2263,14 @@
             <translation>Enge Bögen</translation>
         </message>
         <message>
+            <source>To check by eye: the photographs with what was measured drawn on them</source>
+            <translation>Zum Prüfen mit dem Auge: die Fotos, darin gezeichnet, was gemessen wurde</translation>
+        </message>
+        <message>
+            <source>To look at and print: the sheets with their parts</source>
+            <translation>Zum Ansehen und Drucken: die Tafeln mit ihren Teilen</translation>
+        </message>
+        <message>
             <source>Tolerances</source>
             <translation>Toleranzen</translation>
         </message>
@@ -2305,6 +2393,10 @@
         <message>
             <source>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</source>
             <translation>Bei einem Biegeradius von {radius:g} mm bliebe von einem Rohr daneben nichts übrig.</translation>
+        </message>
+        <message>
+            <source>With insulation</source>
+            <translation>Mit Dämmung</translation>
         </message>
         <message>
             <source>Within the standard's tolerances</source>

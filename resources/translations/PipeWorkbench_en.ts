@@ -779,6 +779,10 @@
             <translation>Approximate pipe</translation>
         </message>
         <message>
+            <source>Around what is insulated in the document</source>
+            <translation>Around what is insulated in the document</translation>
+        </message>
+        <message>
             <source>As built</source>
             <translation>As built</translation>
         </message>
@@ -1023,6 +1027,10 @@
             <translation>Cost/a</translation>
         </message>
         <message>
+            <source>Cut and material lists</source>
+            <translation>Cut and material lists</translation>
+        </message>
+        <message>
             <source>Cut list</source>
             <translation>Cut list</translation>
         </message>
@@ -1155,6 +1163,10 @@
             <translation>Enter accepts the pipe. Digits choose another one. Esc steps back.</translation>
         </message>
         <message>
+            <source>Everything that is known, for this program's command line</source>
+            <translation>Everything that is known, for this program's command line</translation>
+        </message>
+        <message>
             <source>Exactly as in the standard</source>
             <translation>Exactly as in the standard</translation>
         </message>
@@ -1245,6 +1257,38 @@
         <message>
             <source>Folders with CSV files of your own; a table takes the place of the same one further up and of the standards'</source>
             <translation>Folders with CSV files of your own; a table takes the place of the same one further up and of the standards'</translation>
+        </message>
+        <message>
+            <source>For BIM: pipe segments and fittings with their dimensions and accuracy</source>
+            <translation>For BIM: pipe segments and fittings with their dimensions and accuracy</translation>
+        </message>
+        <message>
+            <source>For CAD: named solids, coloured by kind</source>
+            <translation>For CAD: named solids, coloured by kind</translation>
+        </message>
+        <message>
+            <source>For estimating and purchasing: a line per item with its quantity</source>
+            <translation>For estimating and purchasing: a line per item with its quantity</translation>
+        </message>
+        <message>
+            <source>For isometrics: components with their ends, bores and items</source>
+            <translation>For isometrics: components with their ends, bores and items</translation>
+        </message>
+        <message>
+            <source>For people: one file with dimensions, accuracy, charts and photographs</source>
+            <translation>For people: one file with dimensions, accuracy, charts and photographs</translation>
+        </message>
+        <message>
+            <source>For spreadsheets: a line per component</source>
+            <translation>For spreadsheets: a line per component</translation>
+        </message>
+        <message>
+            <source>For the shop and purchasing: parts, sheets and materials of the insulation</source>
+            <translation>For the shop and purchasing: parts, sheets and materials of the insulation</translation>
+        </message>
+        <message>
+            <source>For the shop: the insulation's parts of sheet metal, laid out on sheets</source>
+            <translation>For the shop: the insulation's parts of sheet metal, laid out on sheets</translation>
         </message>
         <message>
             <source>Forget</source>
@@ -1353,6 +1397,10 @@
         <message>
             <source>How the adjustment treats diameters and bend radii of the standards</source>
             <translation>How the adjustment treats diameters and bend radii of the standards</translation>
+        </message>
+        <message>
+            <source>IFC</source>
+            <translation>IFC</translation>
         </message>
         <message>
             <source>IFC4 is what most programs read</source>
@@ -1551,6 +1599,10 @@
             <translation>Note</translation>
         </message>
         <message>
+            <source>Nothing is insulated yet: use Insulation first.</source>
+            <translation>Nothing is insulated yet: use Insulation first.</translation>
+        </message>
+        <message>
             <source>Of a segmented bend</source>
             <translation>Of a segmented bend</translation>
         </message>
@@ -1583,8 +1635,8 @@
             <translation>Of the inner layer</translation>
         </message>
         <message>
-            <source>Of the report's texts</source>
-            <translation>Of the report's texts</translation>
+            <source>Of the texts in the file</source>
+            <translation>Of the texts in the file</translation>
         </message>
         <message>
             <source>Open it afterwards</source>
@@ -1639,12 +1691,20 @@
             <translation>Picks</translation>
         </message>
         <message>
+            <source>Pictures of the cut sheets</source>
+            <translation>Pictures of the cut sheets</translation>
+        </message>
+        <message>
             <source>Pieces</source>
             <translation>Pieces</translation>
         </message>
         <message>
             <source>Pipe</source>
             <translation>Pipe</translation>
+        </message>
+        <message>
+            <source>Pipe Workbench pipeline</source>
+            <translation>Pipe Workbench pipeline</translation>
         </message>
         <message>
             <source>Pipe: click inside it, or on both its edges</source>
@@ -1665,6 +1725,10 @@
         <message>
             <source>Pipes that are nearly level, plumb or at right angles are so</source>
             <translation>Pipes that are nearly level, plumb or at right angles are so</translation>
+        </message>
+        <message>
+            <source>Piping component file</source>
+            <translation>Piping component file</translation>
         </message>
         <message>
             <source>Poor</source>
@@ -1789,6 +1853,10 @@
         <message>
             <source>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</source>
             <translation>Runs that are nearly so are taken to be so, with little weight: the photographs decide where they say something else</translation>
+        </message>
+        <message>
+            <source>STEP solids</source>
+            <translation>STEP solids</translation>
         </message>
         <message>
             <source>Same place</source>
@@ -1955,6 +2023,10 @@
             <translation>Surroundings</translation>
         </message>
         <message>
+            <source>Table</source>
+            <translation>Table</translation>
+        </message>
+        <message>
             <source>Tables of your own</source>
             <translation>Tables of your own</translation>
         </message>
@@ -1969,6 +2041,10 @@
         <message>
             <source>Take the chosen one off the list</source>
             <translation>Take the chosen one off the list</translation>
+        </message>
+        <message>
+            <source>Take-off list</source>
+            <translation>Take-off list</translation>
         </message>
         <message>
             <source>Tee</source>
@@ -2103,6 +2179,14 @@
             <translation>Tight bends</translation>
         </message>
         <message>
+            <source>To check by eye: the photographs with what was measured drawn on them</source>
+            <translation>To check by eye: the photographs with what was measured drawn on them</translation>
+        </message>
+        <message>
+            <source>To look at and print: the sheets with their parts</source>
+            <translation>To look at and print: the sheets with their parts</translation>
+        </message>
+        <message>
             <source>Tolerances</source>
             <translation>Tolerances</translation>
         </message>
@@ -2221,6 +2305,10 @@
         <message>
             <source>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</source>
             <translation>With a bend radius of {radius:g} mm nothing would be left of a pipe beside it.</translation>
+        </message>
+        <message>
+            <source>With insulation</source>
+            <translation>With insulation</translation>
         </message>
         <message>
             <source>Within the standard's tolerances</source>

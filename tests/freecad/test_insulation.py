@@ -11,6 +11,7 @@ import pytest
 from pipeworkbench import features
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.document import add_pipeline, components_in
+from pipeworkbench.features.exporting import TAKE_OFF, export_document
 from pipeworkbench.features.insulation import change_insulation, insulations_in, plans_of, run_of
 from pipeworkbench.features.insulation_settings import Settings, choices_of, set_settings, settings_of
 from pipeworkbench.features.transactions import transaction
@@ -420,6 +421,58 @@ def test_insulation_is_written_in_the_format_of_the_ending(bent, tmp_path):
 def test_nothing_is_written_where_nothing_is_insulated(bent, tmp_path):
     with pytest.raises(InputError, match="nothing is insulated"):
         features.export_insulation(bent, tmp_path / "sheets.dxf")
+
+
+@pytest.mark.parametrize("ending", [".ifc", ".step", ".pcf"])
+def test_models_carry_the_insulation_unless_it_is_left_out(bent, tmp_path, ending):
+    """What the formats say of aluminium jackets or of insulation, which bare pipework never says."""
+    mark = {".ifc": b"IFCCOVERING(", ".step": b"'P1 jacket", ".pcf": b"INSULATION ON"}[ending]
+    insulated(bent, thickness=30.0)
+    export_document(bent, tmp_path / f"with{ending}")
+    export_document(bent, tmp_path / f"without{ending}", insulation=False)
+    assert mark in (tmp_path / f"with{ending}").read_bytes()
+    assert mark not in (tmp_path / f"without{ending}").read_bytes()
+
+
+def test_selected_components_are_exported_with_their_own_insulation(bent, tmp_path):
+    insulated(bent, [component(bent, "P1"), component(bent, "E1")], thickness=30.0)
+    export_document(bent, tmp_path / "one.pcf", [component(bent, "P1"), component(bent, "P2")])
+    assert (tmp_path / "one.pcf").read_text(encoding="utf-8").count("INSULATION ON") == 1
+    export_document(bent, tmp_path / "bare.pcf", [component(bent, "P2")])
+    assert "INSULATION ON" not in (tmp_path / "bare.pcf").read_text(encoding="utf-8")
+    with pytest.raises(InputError, match="nothing is insulated"):
+        export_document(bent, tmp_path / "bare.dxf", [component(bent, "P2")])
+
+
+def test_insulation_of_the_exported_station_alone_counts_where_stations_are_not_merged(bent, tmp_path):
+    components, joints = corner(0.0, ("Q1", "E2", "Q2"), "B")
+    add_pipeline(bent, replace(Pipeline.of_station("B", components), joints=joints))
+    insulated(bent, [component(bent, "Q1")], thickness=30.0)
+    insulated(bent, [component(bent, name) for name in ("P1", "E1")], thickness=30.0)
+    with pytest.raises(InputError, match="merge"):
+        export_document(bent, tmp_path / "all.pcf")
+    export_document(bent, tmp_path / "one.pcf", [component(bent, name) for name in ("P1", "E1", "P2")])
+    assert (tmp_path / "one.pcf").read_text(encoding="utf-8").count("INSULATION ON") == 2
+
+
+@pytest.mark.parametrize("ending", [".dxf", ".pdf", ".xlsx"])
+def test_cut_sheets_and_lists_are_exported_where_something_is_insulated(bent, tmp_path, ending):
+    with pytest.raises(InputError, match="nothing is insulated"):
+        export_document(bent, tmp_path / f"cut{ending}")
+    insulated(bent, thickness=30.0)
+    with pytest.raises(InputError, match="no folder"):
+        export_document(bent, tmp_path / "nowhere" / f"cut{ending}")
+    export_document(bent, tmp_path / f"cut{ending}", insulation=False)
+    assert (tmp_path / f"cut{ending}").stat().st_size > 1000
+
+
+def test_take_off_list_is_told_apart_from_the_table_by_its_key(bent, tmp_path):
+    export_document(bent, tmp_path / "table.csv")
+    export_document(bent, tmp_path / "list.csv", key=TAKE_OFF)
+    assert (tmp_path / "table.csv").read_text(encoding="utf-8").splitlines()[0].startswith("id,")
+    assert (tmp_path / "list.csv").read_text(encoding="utf-8").splitlines()[0].startswith("item,kind,")
+    with pytest.raises(InputError, match=r"use one of \.csv"):
+        export_document(bent, tmp_path / "list.ifc", key=TAKE_OFF)
 
 
 def test_hidden_specification_is_that_of_files(bent):

@@ -8,12 +8,12 @@ import pytest
 from window import LEFT, QTest, choose_file, press, pump, screenshot, standard_button, wait_until, when_dialog_opens
 
 from pipeworkbench.features.document import add_pipeline, components_in
-from pipeworkbench.features.insulation import insulations_in
+from pipeworkbench.features.insulation import insulations_in, make_insulation
 from pipeworkbench.gui.compat import QtCore, QtWidgets, is_alive
 from pipeworkbench.gui.panel import open_panel
 from pipeworkbench.insulation.rules import Changes, ComponentRule, LayerSpec, Match
 from pipeworkbench.insulation.specification import Specification
-from pipeworkbench.pipeline import Elbow, Joint, Pipe, Pipeline
+from pipeworkbench.pipeline import Elbow, Flange, Joint, Pipe, Pipeline
 
 BUTTONS = QtWidgets.QDialogButtonBox.StandardButton
 RADIUS = 76.0
@@ -23,32 +23,61 @@ def pipe(name, start, end):
     return Pipe(id=name, start=start, end=end, outer_diameter=60.3, wall_thickness=2.9, station="A")
 
 
+def elbow(name):
+    """Return the elbow from the pipe along x to the one upwards."""
+    return Elbow(
+        id=name,
+        start=(1000.0, 0.0, 0.0),
+        end=(1000.0 + RADIUS, 0.0, RADIUS),
+        intersection=(1000.0 + RADIUS, 0.0, 0.0),
+        angle_deg=90.0,
+        bend_radius=RADIUS,
+        outer_diameter=60.3,
+        wall_thickness=2.9,
+        station="A",
+    )
+
+
+def flange(name, face, axis):
+    plate = {"D": 165.0, "C": 20.0, "length": 45.0, "neck_diameter": 75.0, "neck_straight": 8.0, "K": 125.0, "L": 18.0, "bolts": 4}
+    return Flange(id=name, face=face, axis=axis, flange_type="11", pn=16.0, outer_diameter=60.3, wall_thickness=2.9, dn=50, station="A", **plate)
+
+
+def flanged():
+    """Return a bent run with a pair of flanges."""
+    components = (
+        flange("F1", (452.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
+        flange("F2", (454.0, 0.0, 0.0), (-1.0, 0.0, 0.0)),
+        pipe("P0", (0.0, 0.0, 0.0), (407.0, 0.0, 0.0)),
+        pipe("P1", (499.0, 0.0, 0.0), (1000.0, 0.0, 0.0)),
+        elbow("E1"),
+        pipe("P2", (1000.0 + RADIUS, 0.0, RADIUS), (1000.0 + RADIUS, 0.0, 600.0)),
+    )
+    ends = (("P0", 1, "F1", 1), ("F1", 0, "F2", 0), ("F2", 1, "P1", 0), ("P1", 1, "E1", 0), ("E1", 1, "P2", 0))
+    joints = tuple(Joint(a=a, a_port=a_port, b=b, b_port=b_port) for a, a_port, b, b_port in ends)
+    return replace(Pipeline.of_station("A", components), joints=joints)
+
+
+def fill(document, pipeline):
+    document.openTransaction("Measure")
+    add_pipeline(document, pipeline)
+    document.recompute()
+    document.commitTransaction()
+    FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
+    FreeCADGui.SendMsgToActiveView("ViewFit")
+
+
 @pytest.fixture
 def bent(document, workbench):
     """The document with a bent run, and a pipe that runs beside it."""
     components = (
         pipe("P1", (0.0, 0.0, 0.0), (1000.0, 0.0, 0.0)),
-        Elbow(
-            id="E1",
-            start=(1000.0, 0.0, 0.0),
-            end=(1000.0 + RADIUS, 0.0, RADIUS),
-            intersection=(1000.0 + RADIUS, 0.0, 0.0),
-            angle_deg=90.0,
-            bend_radius=RADIUS,
-            outer_diameter=60.3,
-            wall_thickness=2.9,
-            station="A",
-        ),
+        elbow("E1"),
         pipe("P2", (1000.0 + RADIUS, 0.0, RADIUS), (1000.0 + RADIUS, 0.0, 900.0)),
         pipe("P3", (0.0, 180.0, 0.0), (1000.0, 180.0, 0.0)),
     )
     joints = (Joint(a="P1", a_port=1, b="E1", b_port=0), Joint(a="E1", a_port=1, b="P2", b_port=0))
-    document.openTransaction("Measure")
-    add_pipeline(document, replace(Pipeline.of_station("A", components), joints=joints))
-    document.recompute()
-    document.commitTransaction()
-    FreeCADGui.ActiveDocument.ActiveView.viewIsometric()
-    FreeCADGui.SendMsgToActiveView("ViewFit")
+    fill(document, replace(Pipeline.of_station("A", components), joints=joints))
     return document
 
 
@@ -207,6 +236,21 @@ def test_preview_shows_the_insulation_and_leaves_the_document_alone(bent):
     assert not insulations_in(bent)
 
 
+def test_preview_and_heat_saved_of_a_run_with_an_elbow_and_flanges(document, workbench):
+    fill(document, flanged())
+    panel = opened()
+    type_number("thickness", "40")
+    type_number("medium_temperature", "120")
+    type_number("price_per_kwh", "0.09")
+    answered(panel)
+    QTest.mouseClick(panel.preview, LEFT)
+    assert wait_until(lambda: panel._overlay.count > 0)
+    assert {piece.covering.kind for piece in panel._outcome.pieces} >= {"straight", "bend", "box"}
+    bare, insulated = (float(row[1]) for row in panel.result.energy.texts()[:2])
+    assert bare > 4 * insulated > 0
+    screenshot("insulation")
+
+
 def test_insulation_is_edited_by_double_click_and_undone(bent):
     select(bent, "P1", "E1", "P2")
     opened()
@@ -267,6 +311,42 @@ def test_specification_file_gives_rules_for_single_components(bent, tmp_path):
     plan = plan_of(bent)
     assert plan.piece_of("P2").covering.layers[0].material == "foam glass"
     assert plan.piece_of("P1").covering.layers[0].material == "glass wool"
+
+
+def test_export_carries_the_insulation_unless_the_switch_is_off(bent, tmp_path):
+    def exported(name, *, insulated=True):
+        press("Export")
+        choose("format", "IFC (*.ifc)")
+        found = child(QtWidgets.QCheckBox, "insulation")
+        assert found.isVisible() == bool(insulations_in(bent))
+        if found.isChecked() != insulated:
+            found.click()
+        child(QtWidgets.QLineEdit, "path").setText(str(tmp_path / name))
+        press_ok()
+        return "IFCCOVERING(" in (tmp_path / name).read_text(encoding="utf-8")
+
+    assert not exported("bare.ifc")
+    opened()
+    press_ok()
+    assert exported("covered.ifc")
+    assert not exported("switched off.ifc", insulated=False)
+
+
+def test_cut_sheets_are_exported_once_something_is_insulated(bent, tmp_path):
+    press("Export")
+    choose("format", "Cut sheets (*.dxf)")
+    child(QtWidgets.QLineEdit, "path").setText(str(tmp_path / "cut.dxf"))
+    explanation = child(QtWidgets.QLabel, "explanation")
+    assert "Nothing is insulated yet" in explanation.text()
+    QTest.mouseClick(standard_button(BUTTONS.Ok), LEFT)
+    assert wait_until(lambda: "nothing is insulated" in open_panel()._message.text())
+    bent.openTransaction("Insulate")
+    make_insulation(bent)
+    bent.recompute()
+    bent.commitTransaction()
+    assert wait_until(lambda: "Nothing" not in explanation.text())
+    press_ok()
+    assert "CUT" in (tmp_path / "cut.dxf").read_text(encoding="utf-8")
 
 
 def test_panel_closes_with_the_insulation_that_it_edits(bent):

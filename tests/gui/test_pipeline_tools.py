@@ -391,6 +391,21 @@ def test_exporting_writes_what_is_selected_in_the_chosen_format(document, workbe
     assert saved_files[-1] == tmp_path / "pipes.csv", "the guide checks its last step off by it"
 
 
+def test_take_off_list_and_table_have_the_same_ending_and_names_of_their_own(document, workbench, tmp_path):
+    fill(document, pipework("A"))
+    for name, file, column in (("Take-off list (*.csv)", "pipes-take-off.csv", "item"), ("Table (*.csv)", "pipes.csv", "id")):
+        press("Export")
+        pump()
+        panel = open_panel()
+        child(QtWidgets.QLineEdit, "path").setText(str(tmp_path / "pipes.ifc"))
+        panel.format.setCurrentIndex(panel.format.findText(name))
+        assert child(QtWidgets.QLineEdit, "path").text() == str(tmp_path / file)
+        QTest.mouseClick(standard_button(BUTTONS.Ok), LEFT)
+        assert wait_until(lambda panel=panel: not panel.is_open)
+        with (tmp_path / file).open(encoding="utf-8", newline="") as written:
+            assert next(csv.reader(written))[0] == column
+
+
 def test_ifc_is_written_in_the_chosen_version(document, workbench, tmp_path):
     fill(document, pipework("A"))
     press("Export")

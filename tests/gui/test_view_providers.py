@@ -16,7 +16,7 @@ from pipeworkbench.features.project import project_of
 from pipeworkbench.gui.colours import colour_of
 from pipeworkbench.gui.compat import QtWidgets
 from pipeworkbench.gui.view_providers import colour_by, select
-from pipeworkbench.pipeline import Pipeline
+from pipeworkbench.pipeline import Elbow, Pipeline
 from pipeworkbench.recon.station import read_station
 
 ROOT = Path(pipeworkbench.__file__).resolve().parent.parent
@@ -45,21 +45,31 @@ def document(tmp_path):
         FreeCAD.closeDocument(name)
 
 
-def nodes(station, kind):
-    """The coin nodes of a kind in a station's scene."""
+def nodes(obj, kind):
+    """The coin nodes of a kind in an object's scene."""
     from pivy import coin
 
     search = coin.SoSearchAction()
     search.setType(getattr(coin, kind).getClassTypeId())
     search.setInterest(coin.SoSearchAction.ALL)
     search.setSearchingAll(True)
-    search.apply(station.ViewObject.RootNode)
+    search.apply(obj.ViewObject.RootNode)
     return [path.getTail() for path in search.getPaths()]
 
 
 def test_objects_of_the_python_interface_have_their_views(document):
     assert {type(obj.ViewObject.Proxy).__name__ for obj in document.Objects} >= {"ProjectView", "StationView", "PipeView", "ConnectionsView"}
     assert all(obj.ViewObject.Visibility for obj in components_in(document))
+
+
+def test_elbows_are_drawn_with_no_more_triangles_than_look_round(document):
+    document.recompute()
+    elbow = next(obj for obj in components_in(document) if obj.Proxy.kind is Elbow)
+    (coordinates,) = nodes(elbow, "SoCoordinate3")
+    points = coordinates.point.getNum()
+    assert points > 100
+    elbow.ViewObject.Deviation = 0.2  # FreeCAD's own
+    assert coordinates.point.getNum() > 1.5 * points
 
 
 def test_cameras_of_a_station_are_drawn_and_cannot_be_picked(document):

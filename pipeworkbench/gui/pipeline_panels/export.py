@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import FreeCAD
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.features.document import components_in
-from pipeworkbench.features.exporting import FORMATS, ExportTask, Format, export_task
+from pipeworkbench.features.exporting import FORMATS, TAKE_OFF, ExportTask, Format, export_task
+from pipeworkbench.features.insulation import insulations_in
 from pipeworkbench.features.preferences import PREFERENCES
 from pipeworkbench.gui.compat import QtCore, QtGui, QtWidgets
 from pipeworkbench.gui.dialogs import ask_save, saved_files
@@ -27,6 +28,7 @@ LANGUAGES = (("en", "English"), ("de", "Deutsch"))
 IFC_SCHEMAS: tuple[tuple[Schema, str], ...] = (("IFC4", "IFC4"), ("IFC4X3_ADD2", "IFC 4.3"))
 ALL, SELECTED = range(2)
 REPORT, IFC = ".html", ".ifc"
+TRANSLATED = (REPORT, ".pdf", ".xlsx")  # formats with texts for people
 
 
 class ExportPanel(Panel):
@@ -59,20 +61,20 @@ class ExportPanel(Panel):
         options.setContentsMargins(0, 0, 0, 0)
         self.report_title = text_line("reportTitle", tr("The report's heading, such as the project's name"), self.document.Label)
         options.addRow(tr("Heading"), self.report_title)
-        self.language = choice("language", [name for _, name in LANGUAGES], tr("Of the report's texts"))
-        self.language.setCurrentIndex(int(QtCore.QLocale().name().startswith("de")))
-        options.addRow(tr("Language"), self.language)
         self.photographs = switch("photographs", tr("Photographs with contours"), tr("They make most of the file's size"), on=True)
         options.addRow(self.photographs)
         self.opened = switch("opened", tr("Open it afterwards"), tr("In the browser"), on=True)
         options.addRow(self.opened)
         form.addRow(self.options)
-        self.ifc_options = QtWidgets.QWidget()
-        ifc_options = QtWidgets.QFormLayout(self.ifc_options)
-        ifc_options.setContentsMargins(0, 0, 0, 0)
+        self.language = choice("language", [name for _, name in LANGUAGES], tr("Of the texts in the file"))
+        self.language.setCurrentIndex(int(QtCore.QLocale().name().startswith("de")))
+        self.language_row = _row(tr("Language"), self.language)
+        form.addRow(self.language_row)
         self.schema = choice("ifcSchema", [name for _, name in IFC_SCHEMAS], tr("IFC4 is what most programs read"))
-        ifc_options.addRow(tr("Version"), self.schema)
-        form.addRow(self.ifc_options)
+        self.schema_row = _row(tr("Version"), self.schema)
+        form.addRow(self.schema_row)
+        self.insulation = switch("insulation", tr("With insulation"), tr("Around what is insulated in the document"), on=True)
+        form.addRow(self.insulation)
         self.path = text_line("path", tr("A file that is there is replaced"))
         browse = button("browse", "...", tr("Choose folder and name"), self.guard(self._browse))
         form.addRow(tr("File"), beside(self.path, browse))
@@ -92,11 +94,21 @@ class ExportPanel(Panel):
 
     def _choose_format(self) -> None:
         chosen = self._chosen()
-        self.explanation.setText(tr(chosen.explanation))
         self.options.setVisible(chosen.ending == REPORT)
-        self.ifc_options.setVisible(chosen.ending == IFC)
+        self.language_row.setVisible(chosen.ending in TRANSLATED)
+        self.schema_row.setVisible(chosen.ending == IFC)
+        self._show_insulation()
         if self.path.text().strip():
-            self.path.setText(str(Path(self.path.text().strip()).with_suffix(chosen.ending)))
+            path = Path(self.path.text().strip())
+            # with one name for all tables, one would replace another
+            stem = path.stem.removesuffix(f"-{TAKE_OFF}") + (f"-{chosen.key}" if chosen.key else "")
+            self.path.setText(str(path.with_name(stem + chosen.ending)))
+
+    def _show_insulation(self) -> None:
+        chosen, is_there = self._chosen(), bool(insulations_in(self.document))
+        lacking = chosen.insulation == "needed" and not is_there
+        self.explanation.setText(tr(chosen.explanation) + (". " + tr("Nothing is insulated yet: use Insulation first.") if lacking else ""))
+        self.insulation.setVisible(chosen.insulation == "carried" and is_there)
 
     def _browse(self) -> None:
         path = ask_save(tr("Export"), self._chosen().filter, Path(self.path.text().strip() or ".").name)
@@ -115,14 +127,17 @@ class ExportPanel(Panel):
             if not objects:
                 raise InputError(self.title, "", tr("no component is selected"), tr("select some, or export all"))
         language = LANGUAGES[self.language.currentIndex()][0]
+        chosen = self._chosen()
         task = export_task(
             self.document,
             path.suffix,
             objects,
+            key=chosen.key if path.suffix.lower() == chosen.ending else "",
             title=self.report_title.text().strip(),
             language=language,
             photographs=self.photographs.isChecked(),
             ifc_schema=IFC_SCHEMAS[self.schema.currentIndex()][0],
+            insulation=self.insulation.isChecked(),
         )
         self.compute(lambda progress: _written(task, path, progress))
         saved_files.append(path)
@@ -138,8 +153,9 @@ class ExportPanel(Panel):
         return path if path.suffix else path.with_suffix(self._chosen().ending)
 
     def refresh(self) -> None:
-        """Count anew."""
+        """Count anew; insulation may have come or gone, too."""
         self._count()
+        self._show_insulation()
 
     def discard(self) -> None:
         """Hear no more of the selection."""
@@ -152,6 +168,15 @@ class ReportPanel(ExportPanel):
     title = "Report"
     icon = "report.svg"
     formats = tuple(one for one in FORMATS if one.ending == REPORT)
+
+
+def _row(name: str, field: Any) -> Any:
+    """Return a field with its name, which are shown and hidden together."""
+    holder = QtWidgets.QWidget()
+    form = QtWidgets.QFormLayout(holder)
+    form.setContentsMargins(0, 0, 0, 0)
+    form.addRow(name, field)
+    return holder
 
 
 def open_in_browser(path: Path) -> None:
