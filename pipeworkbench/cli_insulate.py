@@ -60,7 +60,8 @@ def add_parser(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Plan the insulation of a pipeline and write it."""
-    from pipeworkbench.exports.insulation_files import Insulated
+    from pipeworkbench.exports.insulation_files import Insulated, refuse_unwritable
+    from pipeworkbench.insulation.energy import energy_of_plan
     from pipeworkbench.insulation.planning import plan
     from pipeworkbench.pipeline import Pipeline
 
@@ -68,15 +69,20 @@ def run(options: argparse.Namespace) -> int:
     _check_outputs(options)
     pipeline, specification = Pipeline.read(options.input), _specification(options)
     planned = plan(pipeline, specification)
-    left_out = planned.problems
-    while options.leave_out and planned.problems:
-        planned = planned.without(planned.problems)
+    left_out: list[InputError] = []
+    if options.leave_out:
+        planned, left_out = _without_what_does_not_fit(planned)
     planned.check()
-    made, energy = Insulated(planned, options.language, options.ifc_schema), _energy(planned)
+    made, energy = Insulated(planned, options.language, options.ifc_schema), energy_of_plan(planned)
     if options.energy is not None and energy is None:
         raise InputError(
             COMMAND_LINE, "--energy", "needs the temperature of what flows in the pipes", "give --medium, or operation in the specification"
         )
+    if energy is None and (options.price is not None or options.co2 is not None):
+        name = "--co2" if options.price is None else "--price"
+        raise InputError(COMMAND_LINE, name, "tells nothing without the temperature of what flows in the pipes", "give --medium, or leave it out")
+    files = [path for path in (*options.out, options.labels, options.clashes, options.energy) if path is not None]
+    refuse_unwritable(made, files, options.labels, options.parts)
     outputs = _written(options, made, energy)
     seconds = time.perf_counter() - began
     if options.json:
@@ -86,6 +92,19 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def _without_what_does_not_fit(planned: Plan) -> tuple[Plan, list[InputError]]:
+    """Return the plan in which what cannot be insulated or cut stays bare, and why."""
+    from pipeworkbench.exports.insulation_files import cutting_problems
+
+    left_out: list[InputError] = []
+    while problems := planned.problems or cutting_problems(planned):
+        if planned.left_bare.issuperset(problem.source for problem in problems):
+            break  # what is bare already cannot be mended so
+        left_out += problems
+        planned = planned.without(problems)
+    return planned, left_out
+
+
 def _check_outputs(options: argparse.Namespace) -> None:
     """Refuse, before anything is computed, what could not be written."""
     from pipeworkbench.exports.insulation_files import WRITERS
@@ -93,12 +112,14 @@ def _check_outputs(options: argparse.Namespace) -> None:
 
     kept = [options.input, *([options.spec] if options.spec else [])]
     check_paths(options.out, inputs=kept, endings=tuple(WRITERS))
-    kept += options.out
+    outputs = list(options.out)
     for name, endings in TABLES.items():
         path = getattr(options, name)
         if path is not None:
-            check_paths([path], inputs=kept, endings=endings)
-            kept.append(path)
+            check_paths([path], inputs=kept, endings=endings, outputs=outputs)
+            outputs.append(path)
+    if options.parts is not None and options.parts.exists() and not options.parts.is_dir():
+        raise InputError(options.parts, "", "is a file", "name a folder for the parts")
 
 
 def _specification(options: argparse.Namespace) -> Specification:
@@ -107,8 +128,9 @@ def _specification(options: argparse.Namespace) -> Specification:
     from pipeworkbench.insulation.specification import Specification
 
     if options.spec is None:
-        jacket = None if options.jacket == NO_JACKET else options.jacket or DEFAULT_SHEET
-        found = Specification.uniform(options.thickness, options.material or DEFAULT_MATERIAL, jacket)
+        sheet = DEFAULT_SHEET if options.jacket is None else options.jacket
+        jacket = None if sheet.strip().casefold() == NO_JACKET else sheet
+        found = Specification.uniform(options.thickness, DEFAULT_MATERIAL if options.material is None else options.material, jacket)
     else:
         for name in ("material", "jacket"):
             if getattr(options, name) is not None:
@@ -116,20 +138,6 @@ def _specification(options: argparse.Namespace) -> Specification:
         found = Specification.read(options.spec)
     given = {"medium_temperature": options.medium, "price_per_kwh": options.price, "kg_co2_per_kwh": options.co2}
     return found.with_operation({name: value for name, value in given.items() if value is not None}, COMMAND_LINE)
-
-
-def _energy(planned: Plan) -> Energy | None:
-    """Return what the components lose as they are planned; None where the temperature of none is known."""
-    from pipeworkbench.insulation.energy import energy_of_components
-    from pipeworkbench.insulation.runs import runs_of
-
-    runs = runs_of(planned.pipeline)
-    items = []
-    for component in planned.pipeline.components:
-        operation, piece = planned.specification.operation_of(component, runs[component.id]), planned.piece_of(component.id)
-        if operation.medium_temperature is not None:
-            items.append((component, piece.treatment if piece else None, operation))
-    return energy_of_components(items, runs.__getitem__) if items else None
 
 
 def _written(options: argparse.Namespace, made: Insulated, energy: Energy | None) -> list[Path]:
@@ -193,7 +201,7 @@ def _some(head: str, texts: Iterable[str]) -> list[str]:
 
 
 def _near(one: str, other: str, distance: float, resolved: str) -> str:
-    how = f"{distance:.0f} mm apart" if distance >= 0 else f"{-distance:.0f} mm into each other"
+    how = f"{max(distance, 0.0):.0f} mm apart" if distance > -0.5 else f"{-distance:.0f} mm into each other"
     return f"{one} and {other}: {how}{', ' + resolved if resolved else ''}"
 
 

@@ -9,6 +9,7 @@ import json
 import math
 import os
 import tempfile
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -34,10 +35,21 @@ def package_folder(name: str) -> Path:
     raise InputError(here, "", f"the data folder '{name}' is missing", "install the package again")
 
 
-def read_json(path: Path) -> Any:
-    """Read a JSON file; raise InputError where it is missing, unreadable, not JSON or holds NaN or Infinity."""
+def read_json(path: Path, *, keys_once: bool = False) -> Any:
+    """Read a JSON file; raise InputError where it is missing, unreadable, not JSON or holds NaN or Infinity.
+
+    ``keys_once`` refuses an object that has a key twice, of which the reader would drop the first.
+    """
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        made = dict(pairs)
+        if keys_once and len(made) < len(pairs):
+            key = next(key for key, count in Counter(key for key, _ in pairs).items() if count > 1)
+            raise InputError(path, key, "is given twice in one object", "keep one of them")
+        return made
+
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(path.read_text(encoding="utf-8"), object_pairs_hook=once)
         # Python's reader takes NaN and Infinity, and makes infinity of 1e999
         location = next(_not_finite(data), None)
     except FileNotFoundError:
@@ -109,6 +121,8 @@ def _as_input_error(error: Mapping[str, Any], data: object, source: object, pref
     shown = value if len(value) <= 60 else value[:57] + "..."
     message = error["msg"].removeprefix("Value error, ")
     message = message[:1].lower() + message[1:]
+    if error["type"] == "predicate_failed" and isinstance(error["input"], float) and not math.isfinite(error["input"]):
+        message = "input should be a finite number"
     return InputError(source, key, f"{message} (found {shown})", "correct this value")
 
 

@@ -12,8 +12,8 @@ failed=0
 say "web-ifc, which reads IFC independently"
 bash scripts/web_ifc/install.sh
 
-say "plain pytest"
-.venv/bin/python -m pytest -q "$@" || failed=1
+say "plain pytest, two at a time"
+.venv/bin/python -m pytest -q -n 2 "$@" || failed=1
 
 # FreeCAD swallows exceptions and exits with 0: the verdict is what the tests wrote into a file, and a
 # traceback in its log is a failure whatever they say, but for the errors that objects report to the

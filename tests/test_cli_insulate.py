@@ -205,3 +205,110 @@ def test_negative_overlap_is_refused_with_its_key(file, tmp_path, capsys):
     spec.write_text(json.dumps({"schema": "pipeworkbench-insulation/1", "default": changes}), encoding="utf-8")
     said = refusal(capsys, file, "--spec", spec)
     assert f"{spec}: default.seams.longitudinal_overlap" in said
+
+
+# ---------------------------------------------------------------- slips of the pen
+
+
+WOOL = {"layers": [{"material": "mineral wool", "thickness": 30}]}
+
+
+def specified(folder, **keys):
+    path = folder / "asked.json"
+    path.write_text(json.dumps({"schema": "pipeworkbench-insulation/1", "default": WOOL} | keys), encoding="utf-8")
+    return path
+
+
+def test_parts_never_take_the_place_of_files_that_are_there(file, tmp_path, capsys):
+    folder, other = tmp_path / "parts", tmp_path / "cuts.csv"
+    folder.mkdir()
+    (folder / "p0-1.DXF").write_text("another name", encoding="utf-8")
+    (folder / "P0-1.dxf").write_text("mine", encoding="utf-8")
+    said = refusal(capsys, file, "--thickness", 30, "--parts", folder, "--out", other)
+    assert f"{folder / 'P0-1.dxf'}: is there already and would be lost" in said
+    assert (folder / "P0-1.dxf").read_text(encoding="utf-8") == "mine"
+    assert len(list(folder.iterdir())) <= 2
+    assert not other.exists()
+
+
+def test_an_output_is_not_a_part_as_well(file, tmp_path, capsys):
+    (tmp_path / "parts").mkdir()
+    said = refusal(capsys, file, "--thickness", 30, "--parts", tmp_path / "parts", "--out", tmp_path / "parts" / "P0-1.dxf")
+    assert "is an output and the name of a part as well" in said
+    assert not list((tmp_path / "parts").iterdir())
+
+
+def test_parts_need_a_folder(file, capsys):
+    assert f"{file}: is a file; name a folder for the parts" in refusal(capsys, file, "--thickness", 30, "--parts", file)
+
+
+@pytest.mark.parametrize("last", [("--labels", "labels.csv"), ("--parts", "parts"), ("--out", "cut.dxf"), ("--out", "cut.pdf")])
+def test_nothing_is_written_where_a_later_output_cannot_be(file, tmp_path, capsys, last):
+    option, name = last
+    said = refusal(capsys, file, "--thickness", 30, "--jacket", "none", "--out", tmp_path / "list.csv", option, tmp_path / name)
+    assert f"{tmp_path / name}: there is no part to be cut; give the insulation a jacket of sheet metal" in said
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_one_name_for_two_tables_is_told_as_such(file, tmp_path, capsys):
+    table = tmp_path / "table.csv"
+    assert "is given twice as an output" in refusal(capsys, file, "--thickness", 30, "--labels", table, "--clashes", table)
+
+
+def test_what_the_sheets_are_too_small_for_stays_bare_where_that_is_asked_for(file, tmp_path, capsys):
+    rule = {"match": {"ids": ["E0"]}, "seams": {"circumferential_overlap": 2500}}
+    spec = specified(tmp_path, rules=[rule])
+    assert "E0: gores: " in refusal(capsys, file, "--spec", spec, "--out", tmp_path / "cut.dxf")
+    assert not (tmp_path / "cut.dxf").exists()
+    said = summary(capsys, file, "--spec", spec, "--leave-out", "--out", tmp_path / "cut.dxf")
+    assert said["bare"] == ["E0"]
+    assert [text.partition(":")[0] for text in said["left_out"]] == ["E0"]
+    assert (tmp_path / "cut.dxf").exists()
+
+
+def test_rules_that_are_for_nothing_are_told(file, tmp_path, capsys):
+    rules = [{"name": "typo", "match": {"ids": ["P0", "Pl"]}, "bare": False}, {"match": {"dn": [999]}}, {"match": {"runs": ["R7"]}}]
+    remarks = summary(capsys, file, "--spec", specified(tmp_path, rules=rules))["remarks"]
+    assert remarks[:4] == [
+        "rules[0] 'typo': match.ids: there is no 'Pl'",
+        "rules[1]: is for none of the components",
+        "rules[2]: match.runs: there is no 'R7'",
+        "rules[2]: is for none of the components",
+    ]
+
+
+def test_a_misspelt_id_is_told_with_the_one_that_is_alike(tmp_path, capsys):
+    pipe = Pipe(id="LINE-1001", start=(0, 0, 0), end=(900, 0, 0), outer_diameter=48.3)
+    Pipeline(frame="A", components=(pipe,)).write(tmp_path / "one.json")
+    said = summary(capsys, tmp_path / "one.json", "--spec", specified(tmp_path, rules=[{"match": {"ids": ["LINE-101"]}}]))
+    assert said["remarks"][0] == "rules[0]: match.ids: there is no 'LINE-101'; did you mean 'LINE-1001'?"
+
+
+def test_a_key_given_twice_is_refused(file, tmp_path, capsys):
+    spec = tmp_path / "twice.json"
+    spec.write_text('{"schema": "pipeworkbench-insulation/1", "default": {"bare": true}, "default": {"bare": false}}', encoding="utf-8")
+    assert f"{spec}: default: is given twice in one object; keep one of them" in refusal(capsys, file, "--spec", spec)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--thickness", "1e9"], ["thickness: is 1e+09 mm", "1 to 1000 mm"]),
+        (["--thickness", "1e-9"], ["thickness: is 1e-09 mm", "1 to 1000 mm"]),
+        (["--thickness", "30", "--material", ""], ["material: no material is called ''"]),
+        (["--thickness", "30", "--jacket", ""], ["jacket: no material is called ''"]),
+        (["--thickness", "30", "--price", "0.1"], ["--price", "--medium"]),
+        (["--thickness", "30", "--co2", "0.1"], ["--co2", "--medium"]),
+        (["--thickness", "30", "--medium", "nan"], ["medium_temperature: input should be a finite number (found nan)"]),
+        (["--thickness", "30", "--medium", "1e9"], ["medium_temperature: input should be less than or equal to 2000"]),
+    ],
+)
+def test_numbers_nobody_means_are_refused_in_one_line(file, capsys, arguments, words):
+    said = refusal(capsys, file, *arguments)
+    assert said.count("\n") == 1
+    for word in words:
+        assert word in said
+
+
+def test_the_thinnest_layer_gets_no_stops(file, capsys):
+    assert summary(capsys, file, "--thickness", 1)["pieces"] == 3

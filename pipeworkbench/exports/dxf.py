@@ -84,10 +84,15 @@ def write_parts(patterns: Sequence[Pattern], folder: FilePath) -> tuple[FilePath
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(folder, "", f"the folder cannot be made ({error.strerror})", "name a folder that can be written") from None
-    files = tuple(folder / f"{name}.dxf" for name in file_names([pattern.id for pattern in patterns]))
+    files = part_files(patterns, folder)
     for pattern, file in zip(patterns, files, strict=True):
         _write_parts_into([Placed(pattern, 1, 0.0, (0.0, 0.0))], file)
     return files
+
+
+def part_files(patterns: Sequence[Pattern], folder: FilePath) -> tuple[FilePath, ...]:
+    """Return the files of ``write_parts`` in the order of the patterns."""
+    return tuple(folder / f"{name}.dxf" for name in file_names([pattern.id for pattern in patterns]))
 
 
 def write_sheets(sheets: Sequence[NestedSheet], path: FilePath) -> None:

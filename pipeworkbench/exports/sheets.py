@@ -125,7 +125,7 @@ def nest(patterns: Sequence[Pattern], sizes: Sequence[SheetSize]) -> tuple[Neste
         raise InputError("the sheets", "sheet_sizes", "there is no sheet to cut from", "give at least one size")
     by_sheet: dict[Sheet, list[Pattern]] = defaultdict(list)
     for pattern in patterns:
-        _refuse_too_large(pattern, sizes)
+        refuse_too_large(pattern, sizes)
         by_sheet[pattern.sheet].append(pattern)
     found: list[NestedSheet] = []
     for sheet in sorted(by_sheet, key=lambda one: (one.material, one.thickness)):
@@ -135,7 +135,8 @@ def nest(patterns: Sequence[Pattern], sizes: Sequence[SheetSize]) -> tuple[Neste
     return tuple(replace(one, number=number) for number, one in enumerate(found, 1))
 
 
-def _refuse_too_large(pattern: Pattern, sizes: Sequence[SheetSize]) -> None:
+def refuse_too_large(pattern: Pattern, sizes: Sequence[SheetSize]) -> None:
+    """Raise InputError where a part is larger than all sheets, or none at all: names it and the size it needs."""
     piece = _piece(pattern, 1)
     if not (0 < piece.width < math.inf and 0 < piece.height < math.inf):
         size = f"{piece.width:g} x {piece.height:g} mm"

@@ -45,14 +45,19 @@ WRITERS: dict[str, Callable[[Result, Path], None]] = {
 
 
 def check_paths(
-    paths: Sequence[Path], *, has_photographs: bool = True, inputs: Sequence[Path] = (), endings: Collection[str] = tuple(WRITERS)
+    paths: Sequence[Path],
+    *,
+    has_photographs: bool = True,
+    inputs: Sequence[Path] = (),
+    endings: Collection[str] = tuple(WRITERS),
+    outputs: Sequence[Path] = (),
 ) -> None:
     """Refuse, before anything is computed, what could not be written: unknown endings, missing folders, one name twice.
 
     ``inputs`` are files that must not be overwritten; ``has_photographs`` is False where there is no
-    station at hand, so that no picture can be drawn; ``endings`` are those that are known.
+    station at hand, so that no picture can be drawn; ``endings`` are those that are known; ``outputs`` are files that are written as well.
     """
-    seen = set()
+    seen = {path.resolve() for path in outputs}
     kept = {path.resolve() for path in inputs}
     for path in paths:
         if path.suffix.lower() not in endings:

@@ -15,7 +15,7 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.insulation.connections import Connections, End, Room, total_thickness
 from pipeworkbench.insulation.treatment import Treatment
 from pipeworkbench.pipeline import Elbow
-from pipeworkbench.solids.covering_limits import LEAST_MM, least_gores
+from pipeworkbench.solids.covering_limits import LARGEST_JOINT_DEG, LEAST_MM, least_gores
 from pipeworkbench.solids.coverings import BendCovering
 from pipeworkbench.solids.frames import bend_angle, frame_of
 from pipeworkbench.solids.outlines import refuse_tight_bend
@@ -196,7 +196,12 @@ def _wished_collars(bend: Bend, gores: int, room: Room) -> tuple[tuple[float, fl
 
 
 def _largest_mitred(bend: Bend, tight: dict[str, Bend], room: Room) -> float:
-    """Return the thickness (mm) for which the pipes at both ends have room; the bends at the other ends of them shrink too."""
+    """Return the thickness (mm) for which the pipes at both ends have room; the bends at the other ends of them shrink too.
+
+    Minus infinity where one joint cannot turn so far.
+    """
+    if bend.angle > math.radians(LARGEST_JOINT_DEG) + SAME:
+        return -math.inf
     return min(_largest_beside(bend, port, tight, room) for port in (0, 1))
 
 

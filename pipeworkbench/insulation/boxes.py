@@ -19,7 +19,7 @@ from pipeworkbench.insulation.connections import Connections, End, Room, total_t
 from pipeworkbench.insulation.treatment import Flanges, Treatment
 from pipeworkbench.pipeline import BLIND_FLANGE, AnyComponent, Flange, Pipe
 from pipeworkbench.recon.vectors import as_vector
-from pipeworkbench.solids.covering_limits import LEAST_MM
+from pipeworkbench.solids.covering_limits import LEAST_MM, largest_thickness
 from pipeworkbench.solids.coverings import BoxCovering, Notch
 from pipeworkbench.solids.frames import Frame, frame_of, local_point
 from pipeworkbench.solids.outlines import bolt_diameter, bolt_length, bolt_protrusion, neck_outline
@@ -29,6 +29,7 @@ GASKET_MM = 8.0  # faces nearer than this are one joint (as recon.topology's gas
 FACING_DEG = 6.0  # between the axes of faces that look at each other
 ASIDE = 0.1  # of the flange's diameter by which their centres may be beside each other's axes
 SAME_SIZE = 0.02  # relative difference of pipes of the same diameter
+SAME = 1e-6  # mm
 METAL_AIR_MM = 5.0  # around a plate that is cut out of a box's end
 
 Straights = dict[str, tuple[float, float]]  # the parts (mm from the start) of pipes with insulation of their own
@@ -170,7 +171,35 @@ def chains_of(connections: Connections, faces: dict[End, End], straights: Straig
 
 
 def box_covering(chain: Chain, name: str, connections: Connections, straights: Straights, room: Room) -> tuple[BoxCovering, list[str]]:
-    """Return a chain's box with the id ``name``, and remarks.
+    """Return a chain's box with the id ``name``, and remarks; arguments and errors as of ``_box``.
+
+    Raises
+    ------
+    InputError
+        Also where the box is so thick that no hollow is left; names the largest thickness that works, for its ends move with it.
+    """
+    covering = _box(chain, name, connections, straights, room)
+    if covering.total_thickness > largest_thickness(covering) + SAME:
+
+        def fits(thickness: float) -> bool:
+            layers = (dataclasses.replace(chain.treatment.layers[0], thickness=thickness),)
+            thinner = dataclasses.replace(chain, treatment=dataclasses.replace(chain.treatment, layers=layers))
+            made = _box(thinner, name, connections, straights, room)
+            return made.total_thickness <= largest_thickness(made)
+
+        # in tenths of a millimetre: what is told must work
+        low, high = 0, math.ceil(chain.treatment.thickness * 10)
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if fits(middle / 10) else (low, middle)
+        remedy = f"give at most {low / 10:g} mm" if low else "leave it bare"
+        problem = f"{chain.treatment.thickness:g} mm is more than half the length of the box allows"
+        raise InputError(chain.first.id, "thickness", problem, remedy)
+    return covering, [text for end in sorted(chain.ends, key=lambda end: _place(end, chain, covering.frame)) for text in _remarks(end, connections)]
+
+
+def _box(chain: Chain, name: str, connections: Connections, straights: Straights, room: Room) -> BoxCovering:
+    """Return a chain's box with the id ``name``.
 
     Each end lies over the neighbouring pipe's insulation by the overlap and its own thickness, at most as far as that goes, or half of it
     where another box sits at its other end. Before a fitting without a pipe between it ends where the fitting begins.
@@ -197,7 +226,7 @@ def box_covering(chain: Chain, name: str, connections: Connections, straights: S
             # the hollow ends before the bolts do: they are cut out of the end
             before, behind = (np.array([0.0, 0.0, face + sign * along]) for along in (min(side.far - total, 0.0), side.plain))
             notches.append(Notch(flange.id, before, behind, min(plate + METAL_AIR_MM, radius)))
-    covering = BoxCovering(
+    return BoxCovering(
         id=name,
         component=chain.first.id,
         frame=frame,
@@ -210,7 +239,6 @@ def box_covering(chain: Chain, name: str, connections: Connections, straights: S
         components=(*(flange.id for flange in chain.flanges), *chain.over),
         notches=tuple(notches),
     )
-    return covering, [text for end in ends for text in _remarks(end, connections)]
 
 
 def _place(end: End, chain: Chain, frame: Frame) -> float:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from pipeworkbench.insulation.component_loss import ComponentLoss, component_loss
 from pipeworkbench.insulation.operation import Operation
+from pipeworkbench.insulation.planning import Plan
 from pipeworkbench.insulation.runs import runs_of
 from pipeworkbench.insulation.specification import Specification
 from pipeworkbench.insulation.treatment import Treatment
@@ -100,6 +101,20 @@ def energy_of(pipeline: Pipeline, specification: Specification) -> Energy:
     runs = runs_of(pipeline)
     items = [(c, specification.treatment_of(c, runs[c.id]), specification.operation_of(c, runs[c.id])) for c in pipeline.components]
     return energy_of_components(items, runs.__getitem__)
+
+
+def energy_of_plan(plan: Plan) -> Energy | None:
+    """Return what a pipeline loses in a year, bare and as it is planned; components whose medium's temperature is not known are left out.
+
+    None where that of no component is known.
+    """
+    runs = runs_of(plan.pipeline)
+    items: list[tuple[AnyComponent, Treatment | None, Operation]] = []
+    for component in plan.pipeline.components:
+        operation, piece = plan.specification.operation_of(component, runs[component.id]), plan.piece_of(component.id)
+        if operation.medium_temperature is not None:
+            items.append((component, piece.treatment if piece else None, operation))
+    return energy_of_components(items, runs.__getitem__) if items else None
 
 
 def energy_of_components(items: Iterable[tuple[AnyComponent, Treatment | None, Operation]], run_of: Callable[[str], str] = lambda _: "") -> Energy:

@@ -97,6 +97,11 @@ def materials() -> tuple[Material, ...]:
     return tuple(_material(record) for record in catalogue().records(InsulationMaterial))
 
 
+def sheet_metals() -> tuple[SheetMetal, ...]:
+    """Return all sheet metals of the catalogue in use."""
+    return tuple(_sheet_metal(record) for record in catalogue().records(JacketSheet))
+
+
 def material(name: str, source: object = "materials", key: str = "") -> Material:
     """Return the insulation material of a name, capitals and blanks at its ends left aside.
 
@@ -116,12 +121,15 @@ def material(name: str, source: object = "materials", key: str = "") -> Material
 
 def sheet_metal(name: str, source: object = "materials", key: str = "") -> SheetMetal:
     """Return the sheet metal of a name; arguments and errors as of :func:`material`."""
-    record = _named(catalogue().records(JacketSheet), name, source, key, "insulation_sheets")
-    return SheetMetal(record.name, record.density, record.emissivity, record.verified)
+    return _sheet_metal(_named(catalogue().records(JacketSheet), name, source, key, "insulation_sheets"))
 
 
 def _material(record: InsulationMaterial) -> Material:
     return Material(record.name, record.pairs, record.density, record.highest_temperature, record.verified)
+
+
+def _sheet_metal(record: JacketSheet) -> SheetMetal:
+    return SheetMetal(record.name, record.density, record.emissivity, record.verified)
 
 
 def _named(records: Iterable[R], name: str, source: object, key: str, table: str) -> R:

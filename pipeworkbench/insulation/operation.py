@@ -14,7 +14,9 @@ from pipeworkbench.pipeline import Finite, NotNegative
 HOURS_OF_A_YEAR = 8760.0
 STRONGEST_WIND = 100.0  # m/s; what is more was not given in m/s
 
-Temperature = Annotated[Finite, Gt(ABSOLUTE_ZERO)]
+HOTTEST = 2000.0  # deg C; no insulation stands more
+
+Temperature = Annotated[Finite, Gt(ABSOLUTE_ZERO), Le(HOTTEST)]
 
 
 @dataclass(frozen=True, kw_only=True)

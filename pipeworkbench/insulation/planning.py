@@ -122,7 +122,7 @@ def _planned(pipeline: Pipeline, specification: Specification, left_bare: frozen
         tuple(Piece(covering, layout.connections.treatments[covering.component], runs[covering.component]) for covering in resolved.coverings),
         resolved.clashes,
         (*problems, *resolved.problems),
-        tuple(dict.fromkeys([*layout.remarks, *told])),
+        tuple(dict.fromkeys([*specification.unused(pipeline.components, runs), *layout.remarks, *told])),
         bare,
         left_bare,
     )

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, TypeVar
 
-from annotated_types import Gt
+from annotated_types import Ge, Gt, Le
 
 from pipeworkbench.insulation.operation import Operation
 from pipeworkbench.insulation.thickness import DIN_4140, Rule
@@ -16,6 +16,7 @@ from pipeworkbench.insulation.treatment import Bends, Flanges, Seams, Treatment
 from pipeworkbench.pipeline import AnyComponent, NotNegative, Positive
 
 KindName = Literal["pipe", "elbow", "flange", "tee", "reducer", "cap"]
+THINNEST_SHEET, THICKEST_SHEET = 0.01, 20.0  # mm; what is beyond is a foil or a plate, or was not given in mm
 SAME_DIAMETER = 0.05  # mm; a range's bounds are met by diameters that miss them by rounding
 
 T = TypeVar("T", Seams, Bends, Flanges, Operation)
@@ -68,7 +69,7 @@ class JacketSpec:
     """The jacket's sheet metal and its thickness (mm), or "DIN 4140": by the finished diameter."""
 
     material: str
-    thickness: Positive | Literal["DIN 4140"] = DIN_4140
+    thickness: Annotated[Positive, Ge(THINNEST_SHEET), Le(THICKEST_SHEET)] | Literal["DIN 4140"] = DIN_4140
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,6 +7,7 @@ The file format is ``pipeworkbench-insulation/1``; ``docs/insulation.md`` lists 
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,21 +16,30 @@ from pathlib import Path
 from typing import Any
 
 from pipeworkbench.errors import InputError
-from pipeworkbench.files import check, read_json, written_whole
+from pipeworkbench.files import MISSPELLING_SIMILARITY, check, read_json, written_whole
 from pipeworkbench.insulation.heat_loss import BARE_EMISSIVITY, Layers
 from pipeworkbench.insulation.materials import DEFAULT_MATERIAL, DEFAULT_SHEET, sheet_metal
 from pipeworkbench.insulation.materials import material as material_named
 from pipeworkbench.insulation.operation import Operation
 from pipeworkbench.insulation.rules import Changes, ComponentRule, JacketSpec, LayerSpec, Wanted
-from pipeworkbench.insulation.thickness import DIN_4140, UNVERIFIED, Situation, jacket_thickness, thickness_by
+from pipeworkbench.insulation.thickness import DIN_4140, LEAST_LAYER, THICKEST, UNVERIFIED, Situation, jacket_thickness, thickness_by
 from pipeworkbench.insulation.treatment import Seams, SheetSize, Treatment
 from pipeworkbench.pipeline import AnyComponent, Elbow, Flange, Positive, Vector
 from pipeworkbench.solids.coverings import Layer, Sheet
 
 SCHEMA = "pipeworkbench-insulation/1"
 LEAST_DISTANCE = 100.0  # mm between finished surfaces; DIN 4140, not verified: standards/insulation_distances_din4140.csv
+MOST_TOLD = 5  # unknown names of one rule
+FARTHEST = 1e10  # mm from the origin; plants have coordinates up to some thousand kilometres
 UPRIGHT = math.sin(math.radians(45))  # of an axis' slope from which on it counts as vertical
 DEFAULT_JACKET = JacketSpec(DEFAULT_SHEET)
+
+
+def _check_obstacle(name: str, lengths: Iterable[float]) -> None:
+    if not name:
+        raise ValueError("the id is empty")
+    if max(map(abs, lengths)) > FARTHEST:
+        raise ValueError(f"a length is more than {FARTHEST:g} mm")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +52,7 @@ class Obstacle:
     diameter: Positive
 
     def __post_init__(self) -> None:
+        _check_obstacle(self.id, (*self.start, *self.end, self.diameter))
         if math.dist(self.start, self.end) == 0:
             raise ValueError("start and end are the same point")
 
@@ -55,6 +66,7 @@ class Block:
     upper: Vector
 
     def __post_init__(self) -> None:
+        _check_obstacle(self.id, (*self.lower, *self.upper))
         if any(a >= b for a, b in zip(self.lower, self.upper, strict=True)):
             raise ValueError("lower is not less than upper in all of x, y and z")
 
@@ -95,10 +107,10 @@ class Specification:
         Raises
         ------
         InputError
-            Where the thickness is not positive or no material is called so.
+            Where the thickness is less than 1 mm or more than 1 m, or no material is called so.
         """
-        if not 0 < thickness < math.inf:
-            raise InputError("insulation", "thickness", f"is {thickness:g} mm", "give a positive thickness in mm")
+        if not LEAST_LAYER <= thickness <= THICKEST:
+            raise InputError("insulation", "thickness", f"is {thickness:g} mm", f"give a positive thickness of {LEAST_LAYER:g} to {THICKEST:g} mm")
         name = material_named(material, "insulation", "material").name
         if jacket is None:
             sheet = None
@@ -111,7 +123,7 @@ class Specification:
     @classmethod
     def read(cls, path: Path) -> Specification:
         """Read a JSON file; raise InputError with the path of the key that is wrong."""
-        return cls.from_dict(read_json(path), source=path)
+        return cls.from_dict(read_json(path, keys_once=True), source=path)
 
     @classmethod
     def from_dict(cls, data: Any, source: object = "specification") -> Specification:
@@ -179,6 +191,31 @@ class Specification:
         """Return in what service a component is."""
         return self._wanted(component, run).operation
 
+    def unused(self, components: Sequence[AnyComponent], runs: Mapping[str, str]) -> tuple[str, ...]:
+        """Return what is to be told of rules that are for none of a pipeline's components, and of names in them that none has.
+
+        Parameters
+        ----------
+        components : sequence of Component
+        runs : mapping
+            The names of their runs (`runs_of`) by their ids.
+        """
+        known = {
+            "ids": {component.id for component in components},
+            "runs": set(runs.values()),
+            "stations": {component.station for component in components if component.station is not None},
+        }
+        told = []
+        for index, rule in enumerate(self.rules):
+            name = f"rules[{index}]" + (f" '{rule.name}'" if rule.name else "")
+            for key, names in known.items():
+                missing = [one for one in getattr(rule.match, key) or () if one not in names]
+                told += [f"{name}: match.{key}: there is no '{one}'{_alike(one, names)}" for one in missing[:MOST_TOLD]]
+                told += [f"{name}: match.{key}: nor are there {len(missing) - MOST_TOLD} more"] if len(missing) > MOST_TOLD else []
+            if not any(rule.match.fits(component, runs[component.id]) for component in components):
+                told.append(f"{name}: is for none of the components")
+        return tuple(told)
+
     def _wanted(self, component: AnyComponent, run: str | None) -> Wanted:
         wanted = Wanted(None, DEFAULT_JACKET, operation=self.operation)
         if self.default is not None:
@@ -187,6 +224,11 @@ class Specification:
             if rule.match.fits(component, run):
                 wanted = wanted.changed(rule.changes)
         return wanted
+
+
+def _alike(name: str, names: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, sorted(names), 1, MISSPELLING_SIMILARITY)
+    return f"; did you mean '{close[0]}'?" if close else ""
 
 
 def is_vertical(component: AnyComponent) -> bool:

@@ -11,19 +11,20 @@ from typing import Any, TypeVar
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.files import check, key_path, warn_of_unknown_keys
-from pipeworkbench.insulation.materials import material, sheet_metal
+from pipeworkbench.insulation.materials import material, materials, sheet_metal, sheet_metals
 from pipeworkbench.insulation.operation import Operation
 from pipeworkbench.insulation.rules import Changes, ComponentRule, JacketSpec, LayerSpec, Match
 from pipeworkbench.insulation.specification import LEAST_DISTANCE, SCHEMA, Block, Obstacle, Specification
-from pipeworkbench.insulation.thickness import RULES, HeatLossRule, Rule, SurfaceTemperatureRule, TableRule
+from pipeworkbench.insulation.thickness import RULES, HeatLossRule, LayerThickness, Rule, SurfaceTemperatureRule, TableRule
 from pipeworkbench.insulation.treatment import Bends, Flanges, Seams, SheetSize, Treatment
-from pipeworkbench.pipeline import NotNegative, Positive
+from pipeworkbench.pipeline import NotNegative
 
 CHANGES = ("layers", "jacket", "bare", "seams", "bends", "flanges", "operation")
 RULE = ("name", "match", *CHANGES)
 TOP = ("schema", "name", "default", "rules", "operation", "sheet_sizes", "minimum_distance", "obstacles", "prices")
 PARTS: dict[str, type[Any]] = {"seams": Seams, "bends": Bends, "flanges": Flanges, "operation": Operation}
 GEG_RULE = "GEG"  # short for the table of that law
+LEAST_RIVET_PITCH = 20.0  # mm; nearer to each other rivets tear the sheet
 SOLVED = (HeatLossRule, SurfaceTemperatureRule)
 
 Location = tuple[str | int, ...]
@@ -145,6 +146,9 @@ class _Reader:
         for key, kind in PARTS.items():
             if key in values:
                 given[key] = self.part(kind, values[key], (*location, key))
+        pitch = given.get("seams", {}).get("rivet_pitch", 0.0)
+        if 0 < pitch < LEAST_RIVET_PITCH:
+            raise self.wrong((*location, "seams", "rivet_pitch"), f"is {pitch:g} mm", f"give at least {LEAST_RIVET_PITCH:g}, or 0 for no rivets")
         if "bare" in values:
             given["bare"] = self.value(bool, values["bare"], (*location, "bare"))
         if "layers" in values:
@@ -175,7 +179,7 @@ class _Reader:
         place = (*location, "thickness")
         return LayerSpec(
             material(name, self.source, key_path((*location, "material"))).name,
-            self.thickness_rule(thickness, place) if isinstance(thickness, dict) else self.value(Positive, thickness, place),
+            self.thickness_rule(thickness, place) if isinstance(thickness, dict) else self.value(LayerThickness, thickness, place),
         )
 
     def thickness_rule(self, data: dict[str, Any], location: Location) -> Rule:
@@ -214,6 +218,9 @@ class _Reader:
     def prices(self, data: Any) -> dict[str, float]:
         """Return the prices by the names of materials."""
         values = self.mapping(data, ("prices",))
+        names = [item.name for item in materials()] + [item.name for item in sheet_metals()]
+        known = {name.casefold(): name for name in names}
+        self.unknown({name: price for name, price in values.items() if name.casefold() not in known}, known.values(), ("prices",))
         return {name: self.value(NotNegative, price, ("prices", name)) for name, price in values.items()}
 
 

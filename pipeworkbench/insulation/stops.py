@@ -13,7 +13,7 @@ from pipeworkbench.recon.vectors import across
 from pipeworkbench.solids.coverings import AnyCovering, BoxCovering, StopCovering, TeeCovering
 from pipeworkbench.solids.frames import SAME_DIRECTION, UP, Frame
 
-STEP_MM = 2.0  # between neighbours' outer radii from which on the thicker one is closed: less is a sheet's thickness
+STEP_MM = 2.0  # between neighbours' outer radii from which on the thicker one is closed: less is a sheet's thickness, and no ring can be so narrow
 
 
 def stops_of(coverings: Iterable[AnyCovering], connections: Connections, room: Room, used: MutableSet[str]) -> list[StopCovering]:
@@ -25,7 +25,7 @@ def stops_of(coverings: Iterable[AnyCovering], connections: Connections, room: R
         treatment = connections.treatments[name]
         inner = _inner_radius(end, ends, boxes, connections)
         outer = connections.outer_radius(end)
-        if treatment.jacket is None or inner is None or outer is None:
+        if treatment.jacket is None or inner is None or outer is None or outer - inner <= STEP_MM:
             continue
         stop = StopCovering(
             id=free_id(f"{name} stop {port}", used),

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Final, Literal
 
-from annotated_types import MinLen
+from annotated_types import Ge, Le, MinLen
 
 from pipeworkbench.catalogue import PIPE_STANDARD, InsulationThickness, JacketThickness, StockThickness, catalogue
 from pipeworkbench.catalogue.insulation_records import in_band
@@ -25,11 +25,14 @@ DIN_4140: Final = "DIN 4140"
 FULL = "full"
 THICKEST = 1000.0  # mm; up to which a thickness is searched
 THINNEST = 10.0  # mm; from which on a thickness is searched
+LEAST_LAYER = 1.0  # mm; what is thinner is no insulation
 THICKNESS_TOLERANCE = 1e-6  # mm
 ROUNDING = 1e-6  # mm; by which a thickness may miss a whole millimetre or a stock thickness
 CONVERSION_COEFFICIENT = 10.0  # W/(m2 K), usual indoors: of the surface where a table's thickness is converted
 CONVERSION_TEMPERATURE = 40.0  # deg C, where a table does not say which its conductivity is at
 UNVERIFIED = "not verified against the standard"
+
+LayerThickness = Annotated[Finite, Ge(LEAST_LAYER), Le(THICKEST)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +50,7 @@ class TableRule:
 class Band:
     """A thickness (mm) for diameters above ``from_diameter`` up to ``to_diameter`` (mm)."""
 
-    thickness: Positive
+    thickness: LayerThickness
     from_diameter: NotNegative = 0.0
     to_diameter: Positive | None = None
 
@@ -271,7 +274,7 @@ def _by_heat_loss(rule: HeatLossRule, situation: Situation) -> Thickness:
     def excess(thickness: float) -> float:
         return abs(situation.flow(thickness).flow) - rule.at_most
 
-    return _least(excess, lambda s: f"{excess(s) + rule.at_most:.3g} W/m", f"a heat loss of {rule.at_most:g} W/m", situation)
+    return _least(excess, lambda s: f"{math.ceil((excess(s) + rule.at_most) * 100) / 100:g} W/m", f"a heat loss of {rule.at_most:g} W/m", situation)
 
 
 def _by_surface_temperature(rule: SurfaceTemperatureRule, situation: Situation) -> Thickness:
@@ -283,7 +286,7 @@ def _by_surface_temperature(rule: SurfaceTemperatureRule, situation: Situation) 
     def excess(thickness: float) -> float:
         return situation.flow(thickness).surface_temperature - rule.at_most
 
-    return _least(excess, lambda s: f"{excess(s) + rule.at_most:.4g} deg C", f"a surface of {rule.at_most:g} deg C", situation)
+    return _least(excess, lambda s: f"{math.ceil((excess(s) + rule.at_most) * 100) / 100:g} deg C", f"a surface of {rule.at_most:g} deg C", situation)
 
 
 def _least(excess: Callable[[float], float], reached: Callable[[float], str], wanted: str, situation: Situation) -> Thickness:

@@ -6,10 +6,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, MinLen
+from annotated_types import Ge, Gt, Le, MinLen
 
 from pipeworkbench.pipeline import NotNegative, Positive
 from pipeworkbench.solids.coverings import Layer, Sheet
+
+# what is beyond was not meant, or was not given in mm
+LARGEST_RIVET = 10.0
+LARGEST_BEAD = 100.0
+LARGEST_CLEARANCE = 1000.0
+LARGEST_SHEET = 1e6
+MOST_GORES = 1000
 
 
 @dataclass(frozen=True)
@@ -25,10 +32,10 @@ class Seams:
     circumferential_overlap: NotNegative = 50.0
     gore_overlap: NotNegative = 10.0
     rivet_pitch: NotNegative = 150.0
-    rivet_diameter: Positive = 4.1
+    rivet_diameter: Annotated[Positive, Le(LARGEST_RIVET)] = 4.1
     bead: bool = False
-    bead_allowance: NotNegative = 3.0
-    stagger_deg: NotNegative = 30.0
+    bead_allowance: Annotated[NotNegative, Le(LARGEST_BEAD)] = 3.0
+    stagger_deg: Annotated[NotNegative, Le(180)] = 30.0
 
 
 @dataclass(frozen=True)
@@ -41,7 +48,7 @@ class Bends:
     """
 
     shape: Literal["segmented", "smooth"] = "segmented"
-    gores: Annotated[int, Ge(2)] | None = None
+    gores: Annotated[int, Ge(2), Le(MOST_GORES)] | None = None
     first_gore: Literal["half", "equal"] | NotNegative = "half"
     tight: Literal["mitre", "refuse"] = "mitre"
 
@@ -57,7 +64,7 @@ class Flanges:
     """
 
     cover: Literal["box", "bare"] = "box"
-    clearance: NotNegative = 20.0
+    clearance: Annotated[NotNegative, Le(LARGEST_CLEARANCE)] = 20.0
     gap: NotNegative = 30.0
     overlap: NotNegative = 50.0
     longest_valve: NotNegative = 1200.0
@@ -84,7 +91,12 @@ class Treatment:
 class SheetSize:
     """A sheet or coil to cut from (mm); the grain runs along its width."""
 
-    width: Annotated[float, Gt(0)] = 2000.0
-    height: Annotated[float, Gt(0)] = 1000.0
+    width: Annotated[float, Gt(0), Le(LARGEST_SHEET)] = 2000.0
+    height: Annotated[float, Gt(0), Le(LARGEST_SHEET)] = 1000.0
     margin: NotNegative = 10.0
     spacing: NotNegative = 5.0
+
+    def __post_init__(self) -> None:
+        side = min(self.width, self.height)
+        if 2 * self.margin >= side:
+            raise ValueError(f"margins of {self.margin:g} mm leave nothing of {side:g} mm: give less than {side / 2:g}")

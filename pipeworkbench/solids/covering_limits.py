@@ -202,10 +202,10 @@ def _refuse_too_thick(covering: AnyCovering) -> None:
     sheet = covering.sheet.thickness if covering.sheet else 0.0
     largest = _rounded_down(limit - sheet)
     where = {"bend": "the throat of the bend", "tee": "the room beside the branch", "box": "half the length of the box"}[covering.kind]
-    ways = [f"give at most {largest:g} mm"] if largest > 0 else []
+    ways = [f"give at most {largest:g} mm" if largest > 0 else "leave it bare"]
     if isinstance(covering, TeeCovering):
         ways.append(_extent_told(covering))
-    remedy = " or ".join(ways) or "leave it bare"
+    remedy = " or ".join(ways)
     raise InputError(covering.component, "thickness", f"{covering.thickness:g} mm is more than {where} allows", remedy)
 
 

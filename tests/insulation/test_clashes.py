@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from insulated_pipework import DIAMETER, SHEET, Pen, specification, treatment
 from pipe_rack import pipe_rack
-from pipework import DIAMETER, SHEET, Pen, specification, treatment
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 

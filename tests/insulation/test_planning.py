@@ -8,8 +8,8 @@ import math
 import grown
 import numpy as np
 import pytest
+from insulated_pipework import BEND_RADIUS, DIAMETER, PLATE, SHEET, Pen, specification, treatment
 from pipe_rack import pipe_rack
-from pipework import BEND_RADIUS, DIAMETER, PLATE, SHEET, Pen, specification, treatment
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.insulation.bends import gores_by_rule

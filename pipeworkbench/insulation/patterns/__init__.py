@@ -29,9 +29,9 @@ from pipeworkbench.solids.coverings import (
 )
 
 if TYPE_CHECKING:
-    from pipeworkbench.insulation.planning import Plan
+    from pipeworkbench.insulation.planning import Piece, Plan
 
-__all__ = ["patterns_of", "patterns_of_covering"]
+__all__ = ["patterns_of", "patterns_of_covering", "patterns_of_piece"]
 
 
 def patterns_of(plan: Plan) -> tuple[Pattern, ...]:
@@ -42,9 +42,13 @@ def patterns_of(plan: Plan) -> tuple[Pattern, ...]:
     InputError
         As ``patterns_of_covering``.
     """
-    sizes = plan.specification.sheet_sizes
-    size = max(sizes, key=lambda one: one.width * one.height, default=None)
-    return tuple(pattern for piece in plan.pieces for pattern in patterns_of_covering(piece.covering, piece.treatment.seams, size))
+    return tuple(pattern for piece in plan.pieces for pattern in patterns_of_piece(plan, piece))
+
+
+def patterns_of_piece(plan: Plan, piece: Piece) -> tuple[Pattern, ...]:
+    """Return the patterns of one of a plan's pieces; errors are those of ``patterns_of_covering``."""
+    size = max(plan.specification.sheet_sizes, key=lambda one: one.width * one.height, default=None)
+    return patterns_of_covering(piece.covering, piece.treatment.seams, size)
 
 
 def patterns_of_covering(covering: AnyCovering, seams: Seams, sheet_size: SheetSize | None = None) -> tuple[Pattern, ...]:

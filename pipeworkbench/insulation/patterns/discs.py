@@ -123,7 +123,11 @@ def ring(
         draft = _called(draft, kind, inner, outer, sectors)
         if fits(draft, size) and not crosses_itself(draft.outline):
             return draft
-    raise InputError(component, "sheet_size", f"a ring of {2 * outer:.0f} mm does not fit the sheet, not even in sectors", "take a larger sheet")
+    left, bottom, right, top = draft.outline.bounds
+    margins = 2 * size.margin if size else 0.0
+    needed = f"{math.ceil(right - left + margins)} x {math.ceil(top - bottom + margins)} mm"
+    problem = f"a ring of {2 * outer:.0f} mm does not fit the sheet, not even in sectors"
+    raise InputError(component, "sheet_size", problem, f"take a sheet of at least {needed}")
 
 
 def _slit(inner: float, outer: float, seams: Seams, play: float) -> Draft:

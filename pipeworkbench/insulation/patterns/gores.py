@@ -17,12 +17,11 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.insulation.patterns.drafts import Draft, usable
 from pipeworkbench.insulation.patterns.mantles import Edge, Mantle, develop
 from pipeworkbench.insulation.patterns.openings import cylinder_openings
-from pipeworkbench.insulation.treatment import Seams, SheetSize
+from pipeworkbench.insulation.treatment import MOST_GORES, Seams, SheetSize
 from pipeworkbench.recon.camera import Array
 from pipeworkbench.solids.coverings import AnyNotch, BendCovering, Sheet
 
 MOST_SHELLS = 8  # pieces around, that a gore may be parted into
-MOST_GORES = 1000
 QUARTERS = (0.0, math.pi / 2, math.pi, 3 * math.pi / 2)
 
 
@@ -115,7 +114,7 @@ def shells_needed(covering: BendCovering, seams: Seams, sheet: Sheet, size: Shee
         least = smallest_gore_count(covering, seams, sheet, size)
         problem = f"{covering.gores} gores are too few for the sheet of {size.width:g} x {size.height:g} mm" if size else ""
         if least is None:
-            raise InputError(covering.component, "gores", problem, "take a larger sheet: no number of gores fits this one")
+            raise InputError(covering.component, "gores", problem, "take a larger sheet or shorter overlaps: no number of gores fits this one")
         raise InputError(covering.component, "gores", problem, f"take {least} or more, or a larger sheet")
     return shells
 

@@ -22,6 +22,8 @@ from pipeworkbench.insulation.patterns.openings import Opening
 from pipeworkbench.insulation.treatment import Seams, SheetSize
 
 LATCH_MM = (40.0, 15.0)  # half a latch: across the joint and along it
+MOST_AROUND, MOST_ALONG = 100, 1000  # parts of one jacket; more are a slip of the pen
+ROUNDING_MM = 1e-6  # by how much a limit may be missed: what was told must work
 BEAD_FROM_EDGE_MM = 10.0  # where there is no overlap whose middle the bead could follow
 
 
@@ -100,21 +102,30 @@ def divide(tube: Tube, seams: Seams, size: SheetSize | None) -> Division:
     across = plain > height and length > height
     along_limit, around_limit = (height, length) if across else (length, height)
     room = around_limit - seams.longitudinal_overlap
-    if room <= 0:
-        problem = f"{seams.longitudinal_overlap:g} mm do not fit the sheet of {size.width:g} x {size.height:g} mm"
-        raise InputError(tube.component, "longitudinal_overlap", problem, f"give less than {around_limit:g} mm or take a larger sheet")
+    if room * MOST_AROUND < tube.radius * FULL_TURN / tube.shells - ROUNDING_MM:
+        largest = around_limit - tube.radius * FULL_TURN / tube.shells / MOST_AROUND
+        raise _overlap_too_wide(tube, "longitudinal_overlap", seams.longitudinal_overlap, largest, size)
     shells = tube.shells * math.ceil(tube.radius * FULL_TURN / tube.shells / room - 1e-9)
     # a section in the middle has what joins sections at its upper end; the ends' own overlaps are never longer together
     extra = seams.circumferential_overlap + tube.lower_lap + max(tube.upper_lap - seams.circumferential_overlap, 0.0) + _bead_growth(tube, seams)
     room = along_limit - extra
-    if room <= 0:
-        problem = f"{seams.circumferential_overlap:g} mm do not fit the sheet of {size.width:g} x {size.height:g} mm"
-        advice = f"give less than {max(along_limit - extra + seams.circumferential_overlap, 0.0):g} mm or take a larger sheet"
-        raise InputError(tube.component, "circumferential_overlap", problem, advice)
+    if room * MOST_ALONG < tube.length - ROUNDING_MM:
+        # a tube's own overlaps are as wide as those of sections: all shrink with the one that is asked for
+        shares = 1 + (tube.lower_lap > 0)
+        largest = seams.circumferential_overlap - (tube.length / MOST_ALONG - room) / shares
+        raise _overlap_too_wide(tube, "circumferential_overlap", seams.circumferential_overlap, largest, size)
     sections = math.ceil(tube.length / room - 1e-9)
     if tube.length + tube.lower_lap + tube.upper_lap + _bead_growth(tube, seams) <= along_limit:
         sections = 1
     return Division(sections, shells, across)
+
+
+def _overlap_too_wide(tube: Tube, key: str, overlap: float, largest: float, size: SheetSize) -> InputError:
+    """Return the problem of an overlap (mm) that leaves too little of a sheet."""
+    problem = f"{overlap:g} mm leave too little of the sheet of {size.width:g} x {size.height:g} mm"
+    tenths = math.floor(largest * 10)
+    remedy = f"give at most {tenths / 10:g} mm or take a larger sheet" if tenths >= 0 else "take a larger sheet"
+    return InputError(tube.component, key, problem, remedy)
 
 
 def _bead_growth(tube: Tube, seams: Seams) -> float:
