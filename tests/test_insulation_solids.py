@@ -555,7 +555,7 @@ def test_least_first_layer_is_the_farthest_point_of_the_torus_from_the_gores(rad
         ("tee", {"branch_angle": 0.0}, "branch_angle: the branch does not leave the run"),
         ("tee", {"reach": 60.0}, r"thickness: .*; give at most 0\.8 mm or cover the run from -82\.2 to 82\.2 mm and to 109\.2 mm along the branch"),
         ("hole for a branch", {"branch_radius": 40.0, "begin": -10.0}, r"begin: -10 mm is too near the branch; give at most -18\.5 mm"),
-        ("hole for a branch", {"branch_radius": 40.0, "end": 45.0}, r"thickness: .*; cover the run from -18\.5 to 95\.6 mm"),
+        ("hole for a branch", {"branch_radius": 40.0, "end": 45.0}, r"thickness: .*; leave it bare or cover the run from -18\.5 to 95\.6 mm"),
     ],
 )
 def test_impossible_dimensions_are_refused_with_the_component_s_name(name, changes, message):

@@ -16,7 +16,7 @@ from pipeworkbench.exports.spreadsheets import Cell, Column, Row, Table, write_c
 from pipeworkbench.exports.texts import Texts, named, phrased, texts_of
 from pipeworkbench.insulation.flat import Pattern
 from pipeworkbench.solids.covering_quantities import axis_length, layer_volumes, outer_area
-from pipeworkbench.solids.coverings import AnyCovering, BoxCovering, Layer, Sheet, StopCovering
+from pipeworkbench.solids.coverings import AnyCovering, BoxCovering, Layer, Sheet, StopCovering, TeeCovering
 
 TEXTS = "cut_lists.texts.json"
 MM2, MM3, MM = 1e-6, 1e-9, 1e-3  # in m², m³, m
@@ -318,11 +318,11 @@ def _section_rows(coverings: Sequence[AnyCovering]) -> tuple[Row, ...]:
         if isinstance(covering, StopCovering):
             continue
         for layer, inner, volume in zip(covering.layers, covering.boundaries, layer_volumes(covering), strict=False):
-            diameter = round(2 * (covering.radius + inner), LENGTH_DIGITS)
-            entry = sums[layer.material, layer.thickness, covering.kind, diameter]
-            entry[0] += 1
-            entry[1] += axis_length(covering)
-            entry[2] += volume
+            for kind, diameter, length, share in _sections(covering, inner, layer.thickness, volume):
+                entry = sums[layer.material, layer.thickness, kind, round(diameter, LENGTH_DIGITS)]
+                entry[0] += 1
+                entry[1] += length
+                entry[2] += share
     return tuple(
         {
             "material": material,
@@ -335,6 +335,21 @@ def _section_rows(coverings: Sequence[AnyCovering]) -> tuple[Row, ...]:
         }
         for (material, thickness, kind, diameter), (number, length, volume) in sorted(sums.items())
     )
+
+
+def _sections(covering: AnyCovering, inner: float, thickness: float, volume: float) -> list[tuple[str, float, float, float]]:
+    """Return the kind, inner diameter (mm), length (mm) and volume (mm³) of what a covering's layer is made of: of a tee run and branch.
+
+    The layer begins at ``inner`` (mm). A tee's branch is ordered from the run's axis on, so that the saddle can be cut from it; its share
+    of the tee's volume is that of its wall.
+    """
+    diameter = 2 * (covering.radius + inner)
+    if not (isinstance(covering, TeeCovering) and covering.reach):
+        return [(covering.kind, diameter, axis_length(covering), volume)]
+    branch_diameter, run = 2 * (covering.branch_radius + inner), covering.end - covering.begin
+    walls = (diameter + thickness) * run, (branch_diameter + thickness) * covering.reach
+    branch_volume = volume * walls[1] / sum(walls)
+    return [("tee", diameter, run, volume - branch_volume), ("branch", branch_diameter, covering.reach, branch_volume)]
 
 
 def _sheet_row(sheet: NestedSheet, density: Figure) -> Row:

@@ -135,6 +135,7 @@ def bend_covering(bend: Bend, connections: Connections, room: Room) -> tuple[Ben
     remarks: list[str] = []
     if bend.is_tight:
         gores, collars = 2, (bend.mitre_collar(), bend.mitre_collar())
+        _refuse_long_mitre(bend, connections.sheet_width)
         text = f"{treatment.thickness:g} mm is too thick for gores in a bend of radius {elbow.bend_radius:g} mm: two pieces with one mitre joint"
         remarks.append(f"{elbow.id}: {text}, which go over their neighbours by {collars[0]:.0f} mm")
     elif treatment.bends.shape == "smooth":
@@ -155,6 +156,23 @@ def bend_covering(bend: Bend, connections: Connections, room: Room) -> tuple[Ben
         collars=collars,
     )
     return covering, remarks
+
+
+def _refuse_long_mitre(bend: Bend, sheet_width: float | None) -> None:
+    """Raise InputError where a mitre joint's piece, from the heel's square end to the joint, is longer than the widest sheet."""
+    treatment, radius, slope = bend.treatment, bend.outer_radius, math.tan(bend.angle / 2)
+    if sheet_width is None or treatment.jacket is None:
+        return
+    overlap = max(treatment.seams.gore_overlap, treatment.seams.circumferential_overlap)
+    length = bend.mitre_collar() + (bend.elbow.bend_radius + radius) * slope + overlap
+    if length <= sheet_width + SAME:
+        return
+    # with a collar it is the throat's least length and twice the radius' share, without it the heel alone
+    widest = min((sheet_width - overlap - LEAST_THROAT_MM) / (2 * slope), (sheet_width - overlap) / slope - bend.elbow.bend_radius)
+    largest = math.floor(max(treatment.thickness - (radius - widest), bend.largest_in_gores) + SAME)
+    problem = f"the pieces of its mitre joint are {length:.0f} mm long at the heel with their overlaps; the widest sheet is {sheet_width:g} mm"
+    remedy = f"give a sheet of {math.ceil(length)} mm between its margins" + (f" or at most {largest} mm" if largest > 0 else "")
+    raise InputError(bend.elbow.id, "thickness", problem, remedy)
 
 
 def _gores(bend: Bend, sheet_width: float | None) -> int:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,12 +37,13 @@ Straights = dict[str, tuple[float, float]]  # the parts (mm from the start) of p
 
 @dataclass(frozen=True)
 class Chain:
-    """Flanges under one box in the order of their ids, the pipes that it goes over as well, and its outer ends."""
+    """Flanges under one box in the order of their ids, the pipes that it goes over as well, its outer ends, and the flanges of valves."""
 
     flanges: tuple[Flange, ...]
     over: tuple[str, ...]
     treatment: Treatment
     ends: tuple[End, ...]
+    valves: tuple[tuple[str, str], ...] = ()
 
     @property
     def first(self) -> Flange:
@@ -166,7 +167,8 @@ def chains_of(connections: Connections, faces: dict[End, End], straights: Straig
             under = {pipe for pair, pipe in over.items() if pair <= members}
             under |= {connections.partners[end][0] for end in ends if _is_under(connections.partner(end), connections, straights)}
             flanges = tuple(one for member in sorted(members) if isinstance(one := connections.components[member], Flange))
-            chains.append(Chain(flanges, tuple(sorted(under)), connections.treatments[min(members)], tuple(ends)))
+            valves = tuple(_valves(members, faces, connections))
+            chains.append(Chain(flanges, tuple(sorted(under)), connections.treatments[min(members)], tuple(ends), valves))
     return chains
 
 
@@ -195,7 +197,8 @@ def box_covering(chain: Chain, name: str, connections: Connections, straights: S
         remedy = f"give at most {low / 10:g} mm" if low else "leave it bare"
         problem = f"{chain.treatment.thickness:g} mm is more than half the length of the box allows"
         raise InputError(chain.first.id, "thickness", problem, remedy)
-    return covering, [text for end in sorted(chain.ends, key=lambda end: _place(end, chain, covering.frame)) for text in _remarks(end, connections)]
+    ends = sorted(chain.ends, key=lambda end: _place(end, chain, covering.frame))
+    return covering, [*(text for end in ends for text in _remarks(end, connections)), *(_valve_remark(pair) for pair in chain.valves)]
 
 
 def _box(chain: Chain, name: str, connections: Connections, straights: Straights, room: Room) -> BoxCovering:
@@ -344,7 +347,10 @@ def _side(end: End, treatment: Treatment, connections: Connections, straights: S
     if plain > far - sheet - LEAST_MM:
         # the bolts stand out of the box
         return _Side(far, flange.D / 2 + METAL_AIR_MM)
-    return _Side(far, _neck_radius(flange, max(plain, far - total)), plain)
+    opening = _neck_radius(flange, max(plain, far - total))
+    if isinstance(partner, Pipe):
+        opening = max(opening, partner.outer_diameter / 2 + _misfit(flange, partner, (far - total, far)))
+    return _Side(far, opening, plain)
 
 
 def _on_insulation(flange: Flange, pipe: Pipe, treatment: Treatment, connections: Connections, straight: tuple[float, float]) -> _Side:
@@ -357,7 +363,18 @@ def _on_insulation(flange: Flange, pipe: Pipe, treatment: Treatment, connections
     seat = (end - begin) / (2 if shared else 1)
     along = float(np.subtract(pipe.ports[port].point, flange.face) @ -np.array(flange.axis))
     overlap = min(treatment.flanges.overlap + total_thickness(treatment), seat)
-    return _Side(along + free + overlap, connections.outer_radius((pipe.id, port)) or pipe.outer_diameter / 2)
+    far = along + free + overlap
+    outer = connections.outer_radius((pipe.id, port)) or pipe.outer_diameter / 2
+    return _Side(far, outer + _misfit(flange, pipe, (far - total_thickness(treatment), far)))
+
+
+def _misfit(flange: Flange, pipe: Pipe, places: tuple[float, ...]) -> float:
+    """Return how far (mm) the axis of a measured pipe is from that of its flange, at most, at places behind the flange's face (mm)."""
+    axis, along = np.array(flange.axis), pipe.ports[1].direction
+    across = np.subtract(pipe.start, flange.face)
+    # where the pipe's axis meets the planes across the flange's axis
+    steps = [-(place + float(across @ axis)) / float(along @ axis) for place in places]
+    return max(float(np.linalg.norm(across + step * np.array(along) + place * axis)) for step, place in zip(steps, places, strict=True))
 
 
 def _neck_radius(flange: Flange, place: float) -> float:
@@ -367,6 +384,20 @@ def _neck_radius(flange: Flange, place: float) -> float:
         return flange.outer_diameter / 2
     places, radii = zip(*outline, strict=True)
     return float(np.interp(place, places, radii))
+
+
+def _valves(members: set[str], faces: dict[End, End], connections: Connections) -> Iterator[tuple[str, str]]:
+    """Yield the pairs of flanges with a valve between them: their faces are further apart than a gasket is thick."""
+    for (name, _), (other, _) in faces.items():
+        one, facing_it = connections.components[name], connections.components[other]
+        if name < other and {name, other} <= members and math.dist(one.ports[FACE].point, facing_it.ports[FACE].point) > GASKET_MM:
+            yield name, other
+
+
+def _valve_remark(pair: tuple[str, str]) -> str:
+    return (
+        f"{pair[0]}: the bonnet and the handwheel of the valve between it and {pair[1]} are not known; their opening in the box is to be cut on site"
+    )
 
 
 def _remarks(end: End, connections: Connections) -> list[str]:

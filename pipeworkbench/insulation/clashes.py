@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeworkbench.errors import InputError
 from pipeworkbench.insulation.bodies import covering_hulls, metal_hulls
@@ -29,6 +30,7 @@ from pipeworkbench.solids.frames import Frame, local_point
 
 NOTCH_AIR_MM = 5.0  # between what is cut and what it is cut for
 TOUCH_MM = 1.0  # overlaps of neighbours that the misfits of measured pipework explain
+DISC_POINTS = (12, 180)  # along the radius and around, where a disc is compared with what is cut
 SAME = 1e-9
 
 Kin = Literal["joined", "near", "far"]
@@ -119,7 +121,32 @@ def resolved_clashes(
         problems += [problem] if problem else []
         clashes.append(dataclasses.replace(meeting.clash, resolved="cut" if meeting.clash.distance < 0 and not problem else ""))
     cut = tuple(dataclasses.replace(c, notches=(*c.notches, *notches[c.id])) if c.id in notches else c for c in coverings)
+    cut = _with_stops_cut(cut)
     return Resolved(cut, tuple(sorted(clashes, key=lambda clash: clash.distance)), tuple(problems))
+
+
+def _with_stops_cut(coverings: Sequence[AnyCovering]) -> tuple[AnyCovering, ...]:
+    """Return coverings whose discs are cut where the insulation that they close is; discs of which nothing is left are left out."""
+    closed = {c.component: c for c in coverings if not isinstance(c, StopCovering | BoxCovering)}
+    kept: list[AnyCovering] = []
+    for covering in coverings:
+        if isinstance(covering, StopCovering) and covering.component in closed and closed[covering.component].notches:
+            other, own = closed[covering.component].frame, covering.frame
+            axes = np.array([[float(here @ there) for there in (other.x, other.y, other.z)] for here in (own.x, own.y, own.z)])
+            notches = [notch.moved(axes, local_point(other, as_vector(own.origin))) for notch in closed[covering.component].notches]
+            held: NDArray[np.bool_] = np.array([notch.holds(_disc_points(covering)) for notch in notches])
+            if not held.any(axis=0).all():
+                met = tuple(notch for notch, inside in zip(notches, held, strict=True) if inside.any())
+                kept.append(dataclasses.replace(covering, notches=met))
+        else:
+            kept.append(covering)
+    return tuple(kept)
+
+
+def _disc_points(covering: StopCovering) -> Array:
+    """Return points (n, 3) mm spread over a disc, in its own axes."""
+    radii, angles = np.meshgrid(np.linspace(covering.radius, covering.outer_radius, DISC_POINTS[0]), np.linspace(0, 2 * math.pi, DISC_POINTS[1]))
+    return np.stack([radii * np.cos(angles), radii * np.sin(angles), np.full(radii.shape, covering.total_thickness / 2)], axis=-1).reshape(-1, 3)
 
 
 def _bodies(coverings: Sequence[AnyCovering], connections: Connections, bare: Iterable[str], specification: Specification) -> list[_Body]:

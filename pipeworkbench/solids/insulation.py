@@ -11,9 +11,12 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from pipeworkbench.errors import InputError
+from pipeworkbench.recon.camera import Array
 from pipeworkbench.solids.covering_limits import refuse_impossible
 from pipeworkbench.solids.coverings import (
     AnyCovering,
@@ -34,6 +37,11 @@ if TYPE_CHECKING:
     import cadquery
 
 CONCENTRIC_MM = 1e-6  # an offset below this is none
+INSIDE_MM = 1e-3  # what is nearer to a face lies on it
+TRIED, COMPARED = 60, 8  # points of a notch that are looked for in a body, and those that no longer may be there when it is cut
+ROUNDING = 1e-6  # relative, of volumes
+# points evenly in a unit cube: multiples of powers of the root of x^4 = x + 1 (Roberts 2018)
+SPREAD = np.outer(np.arange(1, 401), 1.22074408460575947536 ** -np.arange(1.0, 4.0)) % 1.0
 
 
 @dataclass
@@ -164,14 +172,65 @@ def _disc(covering: StopCovering) -> NamedSolid:
 def _without_notches(covering: AnyCovering, name: str, body: NamedSolid) -> list[NamedSolid]:
     pieces = [body]
     for notch in covering.notches:
-        tool = _notch_tool(notch)
-        pieces = [left for piece in pieces for left in cut(piece, tool, "notch")]
+        pieces = [left for piece in pieces for left in _cut(covering, name, piece, notch)]
         if not pieces:
             raise InputError(covering.component, "notches", f"{notch.cause} leaves nothing of its {name}", "leave it bare or move them apart")
     return pieces
 
 
-def _notch_tool(notch: AnyNotch) -> Any:
+def _cut(covering: AnyCovering, name: str, body: NamedSolid, notch: AnyNotch) -> list[NamedSolid]:
+    """Return what a notch leaves of a body, as one of several ways of cutting does it right.
+
+    Open CASCADE may leave all of a body, without an error, where two cylinders' axes are nearly parallel; as a free-form surface
+    the tool is cut. Points inside tell which way is right.
+    """
+    points = _shared_points(body, notch)
+    for tool in _notch_tools(notch):
+        left = cut(body, tool, "notch")
+        taken = body.solid.Volume() - sum(piece.solid.Volume() for piece in left)
+        if taken <= tool.Volume() * (1 + ROUNDING) and not any(any(_inside(piece.solid, points)) for piece in left):
+            return left
+    raise InputError(
+        covering.component, "notches", f"{notch.cause} cannot be cut out of its {name}", "change its thickness a little or leave it bare"
+    )
+
+
+def _shared_points(body: NamedSolid, notch: AnyNotch) -> Array:
+    """Return some points (n, 3) mm within both a body and a notch; none where these have little in common."""
+    tool = _notch_tool(notch)
+    one, other = body.solid.BoundingBox(), tool.BoundingBox()
+    low = np.array([max(one.xmin, other.xmin), max(one.ymin, other.ymin), max(one.zmin, other.zmin)])
+    high = np.array([min(one.xmax, other.xmax), min(one.ymax, other.ymax), min(one.zmax, other.zmax)])
+    points = low + SPREAD * (high - low)
+    points = points[notch.holds(points)] if (low < high).all() else points[:0]
+    found = itertools.compress(itertools.count(), _inside(body.solid, points[:TRIED]))
+    return np.asarray(points[list(itertools.islice(found, COMPARED))])
+
+
+def _inside(solid: cadquery.Solid, points: Array) -> Iterator[bool]:
+    """Yield whether points (n, 3) lie within a solid, one after the other: each takes some milliseconds."""
+    from OCP.BRepClass3d import BRepClass3d_SolidClassifier
+    from OCP.gp import gp_Pnt
+    from OCP.TopAbs import TopAbs_IN
+
+    classifier = BRepClass3d_SolidClassifier(solid.wrapped)
+
+    for point in points.tolist():
+        classifier.Perform(gp_Pnt(*point), INSIDE_MM)
+        yield bool(classifier.State() == TopAbs_IN)
+
+
+def _notch_tools(notch: AnyNotch) -> Iterator[cadquery.Solid]:
+    """Yield a notch as a solid, then with its faces as free-form surfaces."""
+    from cadquery import Solid
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+
+    tool = _notch_tool(notch)
+    yield tool
+    yield Solid(BRepBuilderAPI_NurbsConvert(tool.wrapped, True).Shape())
+
+
+def _notch_tool(notch: AnyNotch) -> cadquery.Solid:
     from cadquery import Solid, Vector
 
     if isinstance(notch, BlockNotch):

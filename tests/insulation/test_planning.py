@@ -141,6 +141,9 @@ def test_faces_that_look_at_each_other_are_a_valve_under_one_box():
     result = made(pen)
     box = covering(result, "F1 box")
     assert (box.begin, box.end) == pytest.approx((-230 - 45 - CUT - 81, 45 + CUT + 81))
+    assert [remark for remark in result.remarks if "bonnet" in remark] == [
+        "F1: the bonnet and the handwheel of the valve between it and F2 are not known; their opening in the box is to be cut on site"
+    ]
     short = made(pen, treatment(flanges=Flanges(longest_valve=229.0)))
     assert {p.covering.id for p in short.pieces if isinstance(p.covering, BoxCovering)} == {"F1 box", "F2 box"}
 
@@ -261,6 +264,21 @@ def test_tight_bends_are_refused_on_request_with_the_largest_thickness():
     assert {"P1 stop 1", "P2 stop 0"} <= set(stops(result))
     assert made(pen, treatment(43.0, bends=refuse)).problems == ()
     assert made(pen, treatment(44.0, bends=refuse)).problems
+
+
+def test_mitre_joints_longer_than_the_sheet_are_refused_with_the_largest_thickness():
+    pen = Pen(diameter=323.9).pipe(2000.0).elbow((0, 1, 0), bend_radius=305.0).pipe(2000.0)
+    sheet = (SheetSize(900.0, 400.0, margin=10.0),)
+    result = made(pen, treatment(210.0), sheet_sizes=sheet)
+    # two radii of 161.95 + 210 + 1, 30 of throat and 50 of overlap; (880 - 80) / 2 - 161.95 - 1 = 237.05
+    assert result.problems == ()
+    result = made(pen, treatment(238.0), sheet_sizes=sheet)
+    assert str(result.problems[0]) == (
+        "E1: thickness: the pieces of its mitre joint are 882 mm long at the heel with their overlaps; the widest sheet is 880 mm; "
+        "give a sheet of 882 mm between its margins or at most 237 mm"
+    )
+    assert made(pen, treatment(237.0), sheet_sizes=sheet).problems == ()
+    assert made(pen, treatment(238.0, jacket=None), sheet_sizes=sheet).problems == ()
 
 
 def largest(problem):
@@ -388,14 +406,24 @@ def test_a_stop_lies_where_the_collar_over_a_bare_pipe_ends():
 
 
 def test_seams_lie_at_the_underside_in_turns_to_either_side():
-    result = made(Pen().pipe(300.0).elbow((0, 1, 0)).pipe(300.0), treatment(seams=Seams(stagger_deg=40.0)))
+    result = made(Pen().pipe(300.0).elbow((0, 1, 0)).pipe(300.0).reducer(), treatment(seams=Seams(stagger_deg=40.0)))
     sides = []
-    for name in ("P1", "E1", "P2"):
+    for name in ("P1", "P2", "R1"):
         piece = covering(result, name)
         seam = math.cos(piece.seam) * piece.frame.x + math.sin(piece.seam) * piece.frame.y
         assert seam[2] == pytest.approx(-math.cos(math.radians(20)))
         sides.append(np.sign(np.cross(piece.frame.z, [0, 0, -1]) @ seam))
-    assert sides == [1, -1, 1]
+    assert sides == [1, 1, -1]
+
+
+@pytest.mark.parametrize(
+    ("along", "towards", "seam"),
+    [((1, 0, 0), (0, 1, 0), 0.0), ((1, 0, 0), (0, 0, -1), 0.0), ((1, 0, 0), (0, 0, 1), math.pi), ((0, 0, -1), (1, 0, 0), math.pi)],
+    ids=["lying", "downwards", "upwards", "out of a downpipe"],
+)
+def test_seams_of_bends_lie_at_the_throat_or_where_that_looks_up_at_the_heel(along, towards, seam):
+    result = made(Pen(along=along).pipe(300.0).elbow(towards).pipe(300.0))
+    assert covering(result, "E1").seam == pytest.approx(seam)
 
 
 def test_seams_of_vertical_pipes_follow_x():

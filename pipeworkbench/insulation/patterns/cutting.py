@@ -58,9 +58,10 @@ def opened(outline: Path, net: Path, openings: Iterable[Opening], marks: tuple[M
             remarks.append(f"the opening for {opening.cause} is marked and to be cut on site")
             continue
         cut = result
+        closed = opening.net or path
         before = sum(piece.area for piece in rest)
-        hole = sum(path.area for piece in rest if not len(_crossings(piece, path)) and piece.contains(path.points[:1])[0])
-        rest = [part for piece in rest for part in _remaining(piece, path)]
+        hole = sum(closed.area for piece in rest if not len(_crossings(piece, closed)) and piece.contains(closed.points[:1])[0])
+        rest = [part for piece in rest for part in _remaining(piece, closed)]
         taken += abs(hole) + before - sum(piece.area for piece in rest)
     whole = (*marks, *(("MARK", path) for path in left))
     trimmed = left or cut.outline is not outline

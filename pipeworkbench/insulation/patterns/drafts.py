@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
@@ -21,6 +22,11 @@ LINE_PITCH = 1.6  # from line to line in heights of capitals
 TEXT_CLEARANCE = 0.4  # around texts in heights of capitals
 BORDER_POINTS = 17  # of each side of a block of text, that must lie on the part; odd
 PLACES = 5  # in each direction, that are tried for texts
+LEGIBLE_MM = 3.5  # height of texts that rather lie beside marks than be larger
+MARK_CHORD_MM = 0.5  # of the straight pieces that marks are taken for
+PARALLEL = 1e-12  # mm, in place of nothing
+
+Marks = tuple[Array, Array]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -84,22 +90,45 @@ def numbered(drafts: Iterable[Draft], covering: Covering, sheet: Sheet) -> tuple
 
 
 def engraved(draft: Draft, lines: tuple[str, ...]) -> tuple[Text, ...]:
-    """Return lines of text where they lie within the outline and beside the holes: large ones first, then the first line alone."""
+    """Return lines of text where they lie within the outline and beside the holes: large ones first, then the first line alone.
+
+    Legible ones lie beside the marks where there is such a place; else they go across them.
+    """
     left, bottom, right, top = draft.outline.bounds
     grid = [np.linspace(low, high, PLACES + 2)[1:-1] for low, high in ((left, right), (bottom, top))]
     places = np.stack(np.meshgrid(*grid), axis=-1).reshape(-1, 2)
     middle = np.array(draft.middle if draft.middle is not None else ((left + right) / 2, (bottom + top) / 2))
     places = np.vstack([middle, places[np.argsort(np.hypot(*(places - middle).T), kind="stable")]])
-    for chosen in (lines, lines[:1]):
-        for height in TEXT_HEIGHTS_MM:
-            for angle_deg in (0.0, 90.0):
-                box = _box(chosen, height, angle_deg)
-                # most texts fit into the middle
-                place = _place(draft, places[:1], box)
-                place = _place(draft, places[1:], box) if place is None else place
-                if place is not None:
-                    return _block(chosen, height, angle_deg, place)
+    marks = _straight_pieces(draft)
+    across: Marks = np.zeros((0, 2)), np.zeros((0, 2))
+    legible = [height for height in TEXT_HEIGHTS_MM if height >= LEGIBLE_MM]
+    for chosen, heights, beside in ((lines, legible, marks), (lines, TEXT_HEIGHTS_MM, across), (lines[:1], TEXT_HEIGHTS_MM, across)):
+        for height, angle_deg in itertools.product(heights, (0.0, 90.0)):
+            box = _box(chosen, height, angle_deg)
+            # most texts fit into the middle
+            place = _place(draft, places[:1], box, beside)
+            place = _place(draft, places[1:], box, beside) if place is None else place
+            if place is not None:
+                return _block(chosen, height, angle_deg, place)
     return ()
+
+
+def _straight_pieces(draft: Draft) -> Marks:
+    """Return the starts and ends (n, 2) mm of straight pieces of a part's marks."""
+    sampled = [(mark.sampled(MARK_CHORD_MM), mark.closed) for _, mark in draft.marks]
+    starts = [points if closed else points[:-1] for points, closed in sampled]
+    ends = [np.roll(points, -1, axis=0) if closed else points[1:] for points, closed in sampled]
+    return (np.concatenate(starts), np.concatenate(ends)) if sampled else (np.zeros((0, 2)), np.zeros((0, 2)))
+
+
+def _crossed(low: Array, high: Array, marks: Marks) -> bool:
+    """Return whether any straight piece enters a rectangle between two corners (2,): its shares within both pairs of sides overlap."""
+    starts, ends = marks
+    along = ends - starts
+    safe = np.where(along == 0, PARALLEL, along)
+    one, other = (low - starts) / safe, (high - starts) / safe
+    first, last = np.minimum(one, other).max(axis=1), np.maximum(one, other).min(axis=1)
+    return bool(np.any((first <= last) & (last >= 0) & (first <= 1)))
 
 
 def _box(lines: tuple[str, ...], height: float, angle_deg: float) -> Array:
@@ -112,8 +141,8 @@ def _box(lines: tuple[str, ...], height: float, angle_deg: float) -> Array:
     return turned(border * (x, y), angle_deg)
 
 
-def _place(draft: Draft, places: Array, box: Array) -> Array | None:
-    """Return the first place about which a box, given by its border, lies within a part."""
+def _place(draft: Draft, places: Array, box: Array, marks: Marks) -> Array | None:
+    """Return the first place about which a box, given by its border, lies within a part and beside marks."""
     # corners and middles of sides rule most places out
     rough = box[:: (BORDER_POINTS - 1) // 2]
     hopeful = _free(draft, (places[:, None] + rough).reshape(-1, 2)).reshape(len(places), -1).all(axis=1)
@@ -122,7 +151,7 @@ def _place(draft: Draft, places: Array, box: Array) -> Array | None:
         # a small hole may lie within the box and touch none of its border's points
         bounds = (hole.bounds for hole in draft.holes)
         hit = any((place + low < (b[2], b[3])).all() and (place + high > (b[0], b[1])).all() for b in bounds)
-        if not hit and _free(draft, place + box).all():
+        if not hit and not _crossed(place + low, place + high, marks) and _free(draft, place + box).all():
             return np.asarray(place)
     return None
 

@@ -174,7 +174,7 @@ def met_openings(mantle: Mantle, start: float, over: float) -> list[Opening]:
             continue
         shifts = mantle.radius * (np.array([-(start % FULL_TURN)]) if opening.around else FULL_TURN * np.arange(-3, 5) - start)
         reached = shifts[(right + shifts > 0) & (left + shifts < mantle.radius * (over - start))]
-        met += [Opening(opening.cause, opening.path.moved(0.0, (shift, 0.0))) for shift in reached]
+        met += [opening.moved((float(shift), 0.0)) for shift in reached]
     return met
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,11 +30,18 @@ class Opening:
     """A closed path in the developed plane, and what needs the room.
 
     One that goes all ``around`` is a band over several turns; it has no path where the surface does not repeat itself straight on.
+    ``net`` is what it takes of the net area where that is not the whole path: without play.
     """
 
     cause: str
     path: Path | None
     around: bool = False
+    net: Path | None = None
+
+    def moved(self, shift: tuple[float, float]) -> Opening:
+        """Return it elsewhere in the plane (mm)."""
+        path, net = (one.moved(0.0, shift) if one else None for one in (self.path, self.net))
+        return replace(self, path=path, net=net)
 
 
 def cylinder_openings(notches: Iterable[AnyNotch], radius: float) -> tuple[Opening, ...]:

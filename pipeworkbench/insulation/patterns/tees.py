@@ -74,7 +74,8 @@ def tee(covering: TeeCovering, seams: Seams, sheet: Sheet, size: SheetSize | Non
     covered = covering.reach > 0
     branch_radius = covering.branch_radius + (covering.thickness + sheet.thickness / 2 if covered else PLAY_MM)
     _refuse(covering, run_radius, branch_radius)
-    opening = Opening("the branch", hole(run_radius, branch_radius, covering.branch_angle))
+    bare = None if covered else hole(run_radius, covering.branch_radius, covering.branch_angle)
+    opening = Opening("the branch", hole(run_radius, branch_radius, covering.branch_angle), net=bare)
     half_width = math.asin(min(branch_radius / run_radius, 1.0)) + seams.longitudinal_overlap / run_radius
     blocked = abs((covering.seam + math.pi) % FULL_TURN - math.pi) < half_width
     run = Tube(

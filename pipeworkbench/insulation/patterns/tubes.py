@@ -59,7 +59,7 @@ class Division:
 
 def shifted(openings: Sequence[Opening], shift: float) -> tuple[Opening, ...]:
     """Return openings moved along the axis (mm)."""
-    return tuple(replace(o, path=o.path.moved(0.0, (0.0, shift)) if o.path else None) for o in openings)
+    return tuple(opening.moved((0.0, shift)) for opening in openings)
 
 
 def tube_parts(tube: Tube, seams: Seams, size: SheetSize | None) -> list[Draft]:
