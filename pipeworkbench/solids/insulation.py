@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +26,7 @@ from pipeworkbench.solids.coverings import (
     BoxCovering,
     CapCovering,
     ConeCovering,
+    Notch,
     StopCovering,
     StraightCovering,
     TeeCovering,
@@ -39,7 +40,10 @@ if TYPE_CHECKING:
 CONCENTRIC_MM = 1e-6  # an offset below this is none
 INSIDE_MM = 1e-3  # what is nearer to a face lies on it
 TRIED, COMPARED = 60, 8  # points of a notch that are looked for in a body, and those that no longer may be there when it is cut
-ROUNDING = 1e-6  # relative, of volumes
+SIGMAS, FEWEST = 5.0, 4  # of what points tell of a volume; points that tell nothing
+# by which notches are wider in solids where nearly the same one was cut before, and where nothing else can be cut: less than their air
+APART_MM, WIDER_MM = 0.3, (0.1, 0.5, 1.0)
+ALIKE_MM, ALIKE_COSINE = 0.2, math.cos(math.radians(10.0))  # of nearly the same notches
 # points evenly in a unit cube: multiples of powers of the root of x^4 = x + 1 (Roberts 2018)
 SPREAD = np.outer(np.arange(1, 401), 1.22074408460575947536 ** -np.arange(1.0, 4.0)) % 1.0
 
@@ -171,40 +175,76 @@ def _disc(covering: StopCovering) -> NamedSolid:
 
 def _without_notches(covering: AnyCovering, name: str, body: NamedSolid) -> list[NamedSolid]:
     pieces = [body]
-    for notch in covering.notches:
+    for notch in _apart(covering.notches):
         pieces = [left for piece in pieces for left in _cut(covering, name, piece, notch)]
         if not pieces:
             raise InputError(covering.component, "notches", f"{notch.cause} leaves nothing of its {name}", "leave it bare or move them apart")
     return pieces
 
 
+def _apart(notches: Sequence[AnyNotch]) -> list[AnyNotch]:
+    """Return notches of which round ones that are nearly alike differ by some tenths of a millimetre.
+
+    Those of a bend or of two flanges have nearly the same axis and radius; Open CASCADE cannot tell such faces apart.
+    """
+    made: list[AnyNotch] = []
+    for notch in notches:
+        alike = sum(isinstance(other, Notch) and isinstance(notch, Notch) and _alike(notch, other) for other in notches[: len(made)])
+        made.append(replace(notch, radius=notch.radius + alike * APART_MM) if isinstance(notch, Notch) else notch)
+    return made
+
+
+def _alike(one: Notch, other: Notch) -> bool:
+    axis, other_axis = one.end - one.start, other.end - other.start
+    cosine = abs(float(axis @ other_axis)) / float(np.linalg.norm(axis) * np.linalg.norm(other_axis))
+    return abs(one.radius - other.radius) < ALIKE_MM and cosine > ALIKE_COSINE
+
+
+@dataclass(frozen=True, eq=False)
+class _Shared:
+    """What a body and a notch have in common: some points (n, 3) mm of it, its volume (mm³) and how uncertain that is."""
+
+    points: Array
+    volume: float
+    tolerance: float
+
+
 def _cut(covering: AnyCovering, name: str, body: NamedSolid, notch: AnyNotch) -> list[NamedSolid]:
     """Return what a notch leaves of a body, as one of several ways of cutting does it right.
 
-    Open CASCADE may leave all of a body, without an error, where two cylinders' axes are nearly parallel; as a free-form surface
-    the tool is cut. Points inside tell which way is right.
+    Open CASCADE may leave all of a body, or too little of it, without an error, where two cylinders' axes are nearly parallel; a tool of
+    free-form surfaces or of another radius is cut then. Points tell which way is right.
     """
-    points = _shared_points(body, notch)
-    for tool in _notch_tools(notch):
-        left = cut(body, tool, "notch")
-        taken = body.solid.Volume() - sum(piece.solid.Volume() for piece in left)
-        if taken <= tool.Volume() * (1 + ROUNDING) and not any(any(_inside(piece.solid, points)) for piece in left):
-            return left
-    raise InputError(
-        covering.component, "notches", f"{notch.cause} cannot be cut out of its {name}", "change its thickness a little or leave it bare"
-    )
-
-
-def _shared_points(body: NamedSolid, notch: AnyNotch) -> Array:
-    """Return some points (n, 3) mm within both a body and a notch; none where these have little in common."""
     tool = _notch_tool(notch)
+    shared = _shared(body, notch, tool)
+    if shared is None:
+        return [body]
+    for way in _notch_tools(notch, tool):
+        left = cut(body, way, "notch")
+        taken = body.solid.Volume() - sum(piece.solid.Volume() for piece in left)
+        if abs(taken - shared.volume) <= shared.tolerance and not any(any(_inside(piece.solid, shared.points)) for piece in left):
+            return left
+    problem = f"{notch.cause} cannot be cut out of its {name}"
+    raise InputError(covering.component, "notches", problem, "change its thickness a little or leave it bare")
+
+
+def _shared(body: NamedSolid, notch: AnyNotch, tool: cadquery.Solid) -> _Shared | None:
+    """Return what a body and a notch have in common, None where the boxes around them are apart."""
     one, other = body.solid.BoundingBox(), tool.BoundingBox()
     low = np.array([max(one.xmin, other.xmin), max(one.ymin, other.ymin), max(one.zmin, other.zmin)])
     high = np.array([min(one.xmax, other.xmax), min(one.ymax, other.ymax), min(one.zmax, other.zmax)])
+    if not (low < high).all():
+        return None
     points = low + SPREAD * (high - low)
-    points = points[notch.holds(points)] if (low < high).all() else points[:0]
-    found = itertools.compress(itertools.count(), _inside(body.solid, points[:TRIED]))
-    return np.asarray(points[list(itertools.islice(found, COMPARED))])
+    held = points[notch.holds(points)]
+    room = float(np.prod(high - low)) * len(held) / len(points)
+    tried = held[:TRIED]
+    found = np.fromiter(_inside(body.solid, tried), bool, len(tried))
+    share = float(found.mean()) if len(found) else 0.0
+    deviation = math.hypot(math.sqrt(share * (1 - share) / max(len(found), 1)), 1 / max(len(found), 1))
+    # where hardly a point of the box is in the notch, that is not known better than to some of them
+    slack = float(np.prod(high - low)) * FEWEST / len(points)
+    return _Shared(tried[found][:COMPARED], share * room, SIGMAS * deviation * room + slack)
 
 
 def _inside(solid: cadquery.Solid, points: Array) -> Iterator[bool]:
@@ -220,14 +260,15 @@ def _inside(solid: cadquery.Solid, points: Array) -> Iterator[bool]:
         yield bool(classifier.State() == TopAbs_IN)
 
 
-def _notch_tools(notch: AnyNotch) -> Iterator[cadquery.Solid]:
-    """Yield a notch as a solid, then with its faces as free-form surfaces."""
+def _notch_tools(notch: AnyNotch, tool: cadquery.Solid) -> Iterator[cadquery.Solid]:
+    """Yield a notch's solid, the same with its faces as free-form surfaces, then as cylinders that are a little wider."""
     from cadquery import Solid
     from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
 
-    tool = _notch_tool(notch)
     yield tool
     yield Solid(BRepBuilderAPI_NurbsConvert(tool.wrapped, True).Shape())
+    if isinstance(notch, Notch):
+        yield from (_notch_tool(replace(notch, radius=notch.radius + wider)) for wider in WIDER_MM)
 
 
 def _notch_tool(notch: AnyNotch) -> cadquery.Solid:

@@ -15,7 +15,8 @@ from pipeworkbench.errors import InputError, MissingPackageError
 from pipeworkbench.exports.cut_lists import cut_lists, write_cut_list_csv, write_cut_list_xlsx, write_material_list_csv
 from pipeworkbench.exports.sheets import nest
 from pipeworkbench.insulation.treatment import SheetSize
-from pipeworkbench.solids.coverings import AnyCovering, BoxCovering, Layer, Sheet, StopCovering, StraightCovering
+from pipeworkbench.solids.covering_quantities import layer_volumes
+from pipeworkbench.solids.coverings import AnyCovering, BoxCovering, Layer, Sheet, StopCovering, StraightCovering, TeeCovering
 from pipeworkbench.solids.frames import Frame
 
 SHEET_DENSITIES = {"aluminium": 2700.0, "galvanised steel": 7850.0}
@@ -120,6 +121,20 @@ def test_layers_of_a_box_have_their_own_outer_areas():
     assert row["outer_area_m2"] == pytest.approx((2 * math.pi * 140 * 398 + 2 * math.pi * 140**2) / 1e6, abs=1e-6)
     assert row["volume_m3"] == pytest.approx(math.pi * (140**2 * 398 - 100**2 * 318) / 1e9, abs=1e-9)
     assert [section["kind"] for section in lists.sections] == ["box"]
+
+
+def test_a_tee_is_made_of_sections_for_its_run_and_its_branch():
+    size = {"radius": 57.15, "begin": -150.0, "end": 150.0, "branch_radius": 24.15, "branch_angle": math.pi / 2, "reach": 140.0}
+    tee = TeeCovering(id="T1", component="T1", frame=FRAME, layers=(WOOL, FOAM), sheet=None, **size)
+    lists = lists_of([], pieces=[Piece(tee, "R1")])
+    found = [(row["kind"], row["material"], row["inner_diameter_mm"], row["length_m"]) for row in lists.sections]
+    assert found == [
+        ("branch", "foam", 128.3, 0.14),
+        ("tee", "foam", 194.3, 0.3),
+        ("branch", "mineral wool", 48.3, 0.14),
+        ("tee", "mineral wool", 114.3, 0.3),
+    ]
+    assert sum(row["volume_m3"] for row in lists.sections) == pytest.approx(sum(layer_volumes(tee)) * 1e-9, abs=1e-8)
 
 
 def test_volume_of_sections_is_that_of_the_insulation(lists):

@@ -35,6 +35,25 @@ def crossing(apart, diameter=DIAMETER):
     return Pen().pipe(1000.0).pipeline(Pen(at=(500.0, -500.0, apart), along=(0, 1, 0), prefix="X", diameter=diameter).pipe(1000.0))
 
 
+def test_discs_are_cut_where_the_insulation_that_they_close_is():
+    result = plan(beside(100.0), specification())
+    assert covering(result, "P1 stop 1").notches == covering(result, "XP1 stop 1").notches == ()
+    (notch,) = covering(result, "XP1 stop 0").notches
+    disc = covering(result, "XP1 stop 0").frame
+    # the axis of P1 with its air, in the disc's own axes
+    ends = np.array([disc.origin + end @ np.array([disc.x, disc.y, disc.z]) for end in (notch.start, notch.end)])
+    assert ends[:, 1:] == pytest.approx(np.zeros((2, 2)), abs=1e-9)
+    assert (notch.cause, notch.radius) == ("P1", pytest.approx(OUTER + 5))
+
+
+def test_a_disc_within_other_insulation_is_left_out():
+    thick = Pen(at=(0.0, 0.0, 0.0), diameter=114.3).pipe(1000.0)
+    thin = Pen(at=(500.0, -600.0, 0.0), along=(0, 1, 0), prefix="X").pipe(600.0 - 57.15 - 8.0)
+    result = plan(thick.pipeline(thin), specification(treatment(80.0)))
+    assert [notch.cause for notch in covering(result, "XP1").notches] == ["P1"]
+    assert {piece.covering.id for piece in result.pieces} == {"P1", "P1 stop 0", "P1 stop 1", "XP1", "XP1 stop 0"}
+
+
 def test_parallel_pipes_are_as_far_apart_as_their_surfaces():
     (clash,) = plan(beside(200.0), specification()).clashes
     assert (clash.a, clash.b, clash.least, clash.resolved) == ("P1", "XP1", 100.0, "")

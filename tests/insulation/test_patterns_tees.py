@@ -13,6 +13,7 @@ from pipeworkbench.errors import InputError
 from pipeworkbench.insulation.patterns import patterns_of_covering
 from pipeworkbench.insulation.patterns.tees import PLAY_MM, hole, saddle
 from pipeworkbench.insulation.treatment import Seams, SheetSize
+from pipeworkbench.solids.covering_quantities import hole_area
 from pipeworkbench.solids.coverings import Notch, TeeCovering
 
 SEAMS = Seams()
@@ -121,6 +122,13 @@ def test_a_bare_branch_leaves_a_hole_with_play():
     left, bottom, right, top = run_hole(pattern).bounds
     assert right - left == pytest.approx(2 * (44.45 + PLAY_MM), abs=0.04)
     assert top - bottom == pytest.approx(2 * (57.15 + GROWN) * math.asin((44.45 + PLAY_MM) / (57.15 + GROWN)), abs=0.04)
+
+
+def test_the_net_area_of_a_bare_branch_s_run_knows_no_play():
+    covering = tee(reach=0.0)
+    (run,) = patterns_of_covering(covering, SEAMS)
+    radius = 57.15 + GROWN
+    assert run.net_area == pytest.approx(2 * math.pi * radius * 950 - hole_area(radius, 44.45, math.pi / 2), rel=1e-6)
 
 
 def test_the_runs_seam_keeps_away_from_the_branch():

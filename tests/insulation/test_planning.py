@@ -116,6 +116,15 @@ def test_bolts_can_be_pulled_out_and_the_box_lies_over_the_jackets():
     assert result.remarks == ()
 
 
+def test_a_pipe_beside_its_flange_s_axis_makes_the_box_s_opening_wider():
+    pen = Pen().pipe(600.0).flange().gap(2.0, joined=True).flange(faces_on=False).pipe(700.0)
+    aside = dataclasses.replace(pen.components[0], start=(0.0, 0.3, 0.0), end=(600.0, 0.4, 0.0))
+    pen.components[0] = aside
+    opening = covering(made(pen), "F1 box").openings
+    assert min(opening) == pytest.approx(OUTER)
+    assert OUTER + 0.35 < max(opening) < OUTER + 0.4
+
+
 def test_thick_insulation_reaches_into_the_box():
     result = made(Pen().pipe(600.0).flange().gap(2.0, joined=True).flange(faces_on=False).pipe(700.0), treatment(90.0))
     assert covering(result, "F1 box").radius == pytest.approx(DIAMETER / 2 + 91 + 1)

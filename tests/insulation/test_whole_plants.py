@@ -17,12 +17,13 @@ import pytest
 from ifcopenshell import ifcopenshell_wrapper
 from OCP.BRep import BRep_Tool
 from OCP.BRepCheck import BRepCheck_Analyzer
-from pattern_checks import check_all
+from pattern_checks import check_all, text_corners
 from pipe_rack import pipe_rack
 from points_inside import in_covering, in_metal
 
 from pipeworkbench.exports.ifc import IfcOptions, ifc_model
 from pipeworkbench.exports.insulation_files import Insulated, write
+from pipeworkbench.exports.labels import labels_of_sheets
 from pipeworkbench.insulation.clashes import TOUCH_MM
 from pipeworkbench.insulation.energy import energy_of
 from pipeworkbench.insulation.planning import plan
@@ -118,8 +119,7 @@ def test_bodies_are_sound_and_as_large_as_formulas_say(case):
         for body in bodies:
             assert BRepCheck_Analyzer(body.solid.wrapped).IsValid()
             assert body.solid.ShapeType() == "Solid"
-            (shell,) = body.solid.Shells()
-            assert BRep_Tool.IsClosed_s(shell.wrapped)
+            assert all(BRep_Tool.IsClosed_s(shell.wrapped) for shell in body.solid.Shells())
             assert body.solid.Volume() > 0
         if not covering.notches:
             assert summed(bodies) == pytest.approx(layer_volumes(covering), rel=1e-6), covering.id
@@ -215,6 +215,24 @@ def middle_area(covering):
     return sum(face.Area() for body in covering_bodies(grown_by_half) for face in body.faces["outer"])
 
 
+@pytest.mark.slow
+def test_texts_lie_beside_the_marks():
+    for covering, patterns in unfolded("everything, thick"):
+        for pattern in patterns:
+            scribed = [
+                path.at(*map(np.concatenate, zip(*(along(path, k) for k in range(len(path.segments[2]))), strict=True))) for _, path in pattern.marks
+            ]
+            for text in pattern.texts:
+                low, high = text_corners(text).min(axis=0), text_corners(text).max(axis=0)
+                assert not any(((points > low) & (points < high)).all(axis=1).any() for points in scribed), (covering.id, text)
+
+
+def along(path, segment):
+    """Return places on a path's segment, no further than 0.5 mm apart."""
+    count = max(int(np.hypot(*np.ptp(path.sampled(), axis=0))) * 4, 2)
+    return np.full(count, segment), np.arange(count) / count
+
+
 def test_without_a_jacket_nothing_is_cut():
     assert not any(patterns for _, patterns in unfolded("everything without a jacket"))
 
@@ -267,7 +285,9 @@ def test_lists_add_up(case):
     assert sum(row["total_area_m2"] for row in lists.cuts) == pytest.approx(area, abs=1e-6)
     assert sum(row["parts_area_m2"] for row in lists.metals) == pytest.approx(area, abs=1e-5)
     assert sum(row["pieces"] for row in lists.sheets) == sum(row["quantity"] for row in lists.cuts)
-    assert {row["run"] for row in lists.cuts} <= set(made.runs.values())
+    runs = {f"R{number}" for number in range(1, 99)}
+    assert {row["run"] for row in lists.cuts} <= runs
+    assert {label.run for label in labels_of_sheets(made.sheets, made.runs)} <= runs
 
 
 @pytest.mark.parametrize("name", PLANTS)
